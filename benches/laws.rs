@@ -110,26 +110,26 @@ fn plate(law: &Law) -> f64 {
 }
 
 fn stress(law: &Law, gradients: &[Vec<f64>; 4]) -> f64 {
-    let mut found: [Vec<f64>; 4] = std::array::from_fn(|_| vec![0.0; POINTS]);
+    let mut result: [Vec<f64>; 4] = std::array::from_fn(|_| vec![0.0; POINTS]);
     let start = Instant::now();
     law.stresses(
         gradients.each_ref().map(|line| &line[..]),
-        found.each_mut().map(|line| &mut line[..]),
+        result.each_mut().map(|line| &mut line[..]),
     );
     let seconds = start.elapsed().as_secs_f64();
-    black_box(&found);
+    black_box(&result);
     seconds
 }
 
 fn tangent(law: &Law, gradients: &[Vec<f64>; 4]) -> f64 {
-    let mut found: [Vec<f64>; COMPONENTS] = std::array::from_fn(|_| vec![0.0; POINTS]);
+    let mut result: [Vec<f64>; COMPONENTS] = std::array::from_fn(|_| vec![0.0; POINTS]);
     let start = Instant::now();
     law.responses(
         gradients.each_ref().map(|line| &line[..]),
-        found.each_mut().map(|line| &mut line[..]),
+        result.each_mut().map(|line| &mut line[..]),
         true,
     );
     let seconds = start.elapsed().as_secs_f64();
-    black_box(&found);
+    black_box(&result);
     seconds
 }

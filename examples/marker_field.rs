@@ -36,14 +36,14 @@ pub fn report() -> Result<String, Box<dyn Error>> {
         ..Knowledge::default()
     };
     let frame = &markers.frames[1];
-    let found = estimate(&specimen, &frame.markers, &knowledge)?;
-    let judged = found.markers.iter().flatten();
+    let result = estimate(&specimen, &frame.markers, &knowledge)?;
+    let judged = result.markers.iter().flatten();
     let outliers = judged.filter(|marker| marker.outlier).count();
-    let (count, noise) = (frame.markers.len(), found.noise);
+    let (count, noise) = (frame.markers.len(), result.noise);
     let mut text = format!("{count} markers, {outliers} outliers, noise {noise:.3} mm\n");
-    for edge in &found.forces {
+    for edge in &result.forces {
         let ([x, _], name) = (edge.force, &edge.edge);
-        let reach = found.reach * x.standard_error;
+        let reach = result.reach * x.standard_error;
         text += &format!("force on {name:<5} {:>7.3} ± {reach:.3} N\n", x.value);
     }
     Ok(text)

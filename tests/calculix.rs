@@ -86,8 +86,8 @@ fn solved(study: &str, factors: &[&str]) -> Vec<f64> {
 }
 
 fn calculix_finds_the_same_plate() {
-    let found = solved(&format!("{PLATE}element = \"Q2\"\n"), &["20 %", "50 %"]);
-    assert!(found.iter().all(|percent| *percent < 0.5), "{found:?}");
+    let result = solved(&format!("{PLATE}element = \"Q2\"\n"), &["20 %", "50 %"]);
+    assert!(result.iter().all(|percent| *percent < 0.5), "{result:?}");
 }
 
 /// CalculiX' linear solids are not the bilinear elements of a sheet: both come nearer to each other on finer meshes.
@@ -122,10 +122,10 @@ fn calculix_finds_the_same_strip_with_a_hole_under_every_load() {
             _ => HOLE.to_owned(),
         };
         let study = format!("{hole}{load}[finite_element]\nelement = \"{element}\"\n");
-        let found = solved(&study, factors);
+        let result = solved(&study, factors);
         assert!(
-            found.iter().all(|percent| *percent < 0.5),
-            "{load}: {found:?}"
+            result.iter().all(|percent| *percent < 0.5),
+            "{load}: {result:?}"
         );
     }
 }
@@ -135,7 +135,7 @@ fn calculix_finds_the_same_on_meshes_that_are_fine_where_they_must() {
         format!("{PLATE}element = \"Q2\"\ngrading = 2.0\n"),
         format!("{HOLE}{PULLED}{ADAPTIVE}"),
     ] {
-        let found = solved(&study, &["0.5"]);
-        assert!(found[0] < 0.5, "{study}: {found:?}");
+        let result = solved(&study, &["0.5"]);
+        assert!(result[0] < 0.5, "{study}: {result:?}");
     }
 }

@@ -64,8 +64,10 @@ fn row(browser: &Browser, table: &str, begin: &str) -> Vec<String> {
         "return [...document.getElementById('{table}').rows].map(row => [...row.cells].map(cell => cell.textContent))"
     ));
     let rows: Vec<Vec<String>> = serde_json::from_value(rows).unwrap();
-    let found = rows.iter().find(|row| row[0].starts_with(begin));
-    found.unwrap_or_else(|| panic!("{begin}: {rows:?}")).clone()
+    let actual = rows.iter().find(|row| row[0].starts_with(begin));
+    actual
+        .unwrap_or_else(|| panic!("{begin}: {rows:?}"))
+        .clone()
 }
 
 fn a_reader_points_drags_and_chooses() {
@@ -82,8 +84,8 @@ fn a_reader_points_drags_and_chooses() {
     browser.point("#explorer-field", &[[0, 0]], false);
     let ux = row(&browser, "explorer-values", "displacement along x");
     for model in &ux[1..] {
-        let found: f64 = model.parse().unwrap();
-        assert!((found - 37.5).abs() < 0.3, "{ux:?}");
+        let actual: f64 = model.parse().unwrap();
+        assert!((actual - 37.5).abs() < 0.3, "{ux:?}");
     }
     let head = row(&browser, "explorer-values", "at rest at (");
     assert_eq!(&head[1..], ["mass-spring", "corrected", "finite elements"]);
@@ -96,8 +98,8 @@ fn a_reader_points_drags_and_chooses() {
     );
     let force = number(&results["steps"][1], &["finite_element", "force_N"]);
     let mean = force / (50.0 * 2.0) * 1.5;
-    let found: f64 = stress[3].parse().unwrap();
-    assert!((found / mean - 1.0).abs() < 0.1, "{found} {mean}");
+    let actual: f64 = stress[3].parse().unwrap();
+    assert!((actual / mean - 1.0).abs() < 0.1, "{actual} {mean}");
 
     // Dragging over the curve to its first point goes to the first stretch.
     assert_eq!(

@@ -44,9 +44,9 @@ impl Run {
     }
 
     /// Keeps the shorter times.
-    fn improve(&mut self, found: &Found) {
-        let evaluation = (self.seconds / self.work_units).min(found.evaluation);
-        self.seconds = self.seconds.min(found.seconds);
+    fn improve(&mut self, actual: &Found) {
+        let evaluation = (self.seconds / self.work_units).min(actual.evaluation);
+        self.seconds = self.seconds.min(actual.seconds);
         self.work_units = self.seconds / evaluation;
     }
 }
@@ -95,10 +95,10 @@ impl Bench<'_> {
         for (way, threads, error) in &contestants {
             let before = MEMORY.current_usage();
             MEMORY.reset_peak_usage();
-            let found = self.go(*way, layout, *threads, *error)?;
+            let actual = self.go(*way, layout, *threads, *error)?;
             let bytes = (MEMORY.peak_usage() - before) as f64;
-            runs.push(self.run(*way, layout, *threads, &found, bytes));
-            fields.push(found.field);
+            runs.push(self.run(*way, layout, *threads, &actual, bytes));
+            fields.push(actual.field);
         }
         compare(&mut runs, &fields, &exact, self.stretch);
         drop((fields, exact));
@@ -123,20 +123,22 @@ impl Bench<'_> {
         }
     }
 
-    fn run(&self, way: Way, layout: Layout, threads: usize, found: &Found, bytes: f64) -> Run {
-        let nodes = found.grid.nodes();
+    fn run(&self, way: Way, layout: Layout, threads: usize, actual: &Found, bytes: f64) -> Run {
+        let nodes = actual.grid.nodes();
         Run {
             way,
             layout,
             nodes,
             threads,
-            seconds: found.seconds,
-            force: found.force,
-            departure_percent: self.reference.departure_percent(&found.grid, &found.field),
-            force_percent: self.reference.force_percent(found.force),
-            iterations: found.iterations,
+            seconds: actual.seconds,
+            force: actual.force,
+            departure_percent: self
+                .reference
+                .departure_percent(&actual.grid, &actual.field),
+            force_percent: self.reference.force_percent(actual.force),
+            iterations: actual.iterations,
             bytes_per_node: bytes / nodes as f64,
-            work_units: found.seconds / found.evaluation,
+            work_units: actual.seconds / actual.evaluation,
             difference_percent: f64::NAN,
             same_bits: true,
         }

@@ -43,8 +43,8 @@ impl<'a> Row<'a> {
                 .find(|run| run.way == way && run.layout == climb.layout)
         };
         let elements = |guess: Guess| {
-            let found = here(Way::FiniteElements(scheme, guess));
-            found.expect("finite elements are measured on every grid")
+            let result = here(Way::FiniteElements(scheme, guess));
+            result.expect("finite elements are measured on every grid")
         };
         let cheapest = |guess: Guess| {
             let as_accurate = runs.iter().filter(|run| {

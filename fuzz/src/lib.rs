@@ -23,7 +23,7 @@ pub fn count(target: &str, bytes: &[u8]) {
         && let Ok(file) = std::env::var("GELBENCH_FUZZ_COUNTS")
     {
         let [complete, unsolved] = [&COMPLETE, &UNSOLVED].map(|count| count.load(Ordering::Relaxed));
-        let told = format!("{inputs} inputs, {complete} complete, {unsolved} without a solution\n");
-        let _ = std::fs::write(file, told);
+        let message = format!("{inputs} inputs, {complete} complete, {unsolved} without a solution\n");
+        let _ = std::fs::write(file, message);
     }
 }

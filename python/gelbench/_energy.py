@@ -99,6 +99,15 @@ def _gradient(c11: Any, c12: Any, c22: Any) -> Any:
     return np.array([[f11, f12, 0.0], [0.0, f22, 0.0], [0.0, 0.0, 1.0 / (f11 * f22)]], dtype=object)
 
 
+def _traced(energy: Energy, *variables: Any) -> Any:
+    """The value of a callable of variables."""
+    try:
+        return energy(*variables)
+    except TypeError as cause:
+        # Functions of numpy.linalg take numbers alone.
+        raise _not_a_formula(f"takes what is no part of a formula: {cause}") from cause
+
+
 def _formula(energy: Energy) -> str:
     """The formula that a callable writes."""
     try:
@@ -106,16 +115,16 @@ def _formula(energy: Energy) -> str:
     except (TypeError, ValueError):
         names = []
     if names in (["i1"], ["i1", "i2"]):
-        value = energy(*(_Formula(name.upper()) for name in names))
+        value = _traced(energy, *(_Formula(name.upper()) for name in names))
     elif names in (["c"], ["f"]):
         c11, c12, c22 = (_Formula(name) for name in ("C11", "C12", "C22"))
         gradient = _gradient(c11, c12, c22)
         if names == ["f"]:
             _check_objectivity(energy)
-            value = energy(gradient)
+            value = _traced(energy, gradient)
         else:
             across = 1.0 / (c11 * c22 - c12**2)
-            value = energy(np.array([[c11, c12, 0.0], [c12, c22, 0.0], [0.0, 0.0, across]], dtype=object))
+            value = _traced(energy, np.array([[c11, c12, 0.0], [c12, c22, 0.0], [0.0, 0.0, across]], dtype=object))
     else:
         raise fault("energy", f"is a function of {', '.join(names) or 'nothing'}", "it must be one of i1 and i2, of i1, of C, or of F")
     if value is None:

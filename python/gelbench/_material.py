@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 from . import _core
 from ._energy import Energy, card_of
 from ._errors import InputError, WriteError, fault
-from ._quantities import Floats, PathLike, Quantity, array_of, text, toml
+from ._quantities import Floats, PathLike, Quantity, array_of, text, texts, toml
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -52,6 +52,13 @@ def laws() -> dict[str, str]:
         Energies by names.
     """
     return dict(_core.laws())
+
+
+def viscosity_sections(viscosity: Mapping[str, Any] | None, name: str) -> dict[str, Any]:
+    """The sections of a viscosity; plain numbers are MPa·s and s."""
+    viscous = texts(viscosity or {}, {"shear": "MPa*s"}, "viscosity")
+    terms = [texts(term, {"time": "s"}, "viscosity.relaxation") for term in viscous.pop("relaxation", [])]
+    return {name: viscous} | ({f"{name}.relaxation": terms} if terms else {})
 
 
 class Material:
@@ -211,11 +218,11 @@ class Material:
         gelbench.InputError
             With every fault, and where the card states such a property already.
         """
-        viscous = dict(viscosity or {})
-        terms = [dict(term) for term in viscous.pop("relaxation", [])]
-        sections: dict[str, Any] = {"softening": dict(softening or {}), "volume": dict(volume or {}), "viscosity": viscous}
-        if terms:
-            sections["viscosity.relaxation"] = terms
+        sections: dict[str, Any] = {
+            "softening": texts(softening or {}, {"m": "MPa"}, "softening"),
+            "volume": texts(volume or {}, {"bulk_modulus": "MPa"}, "volume"),
+            **viscosity_sections(viscosity, "viscosity"),
+        }
         added = toml(sections)
         stated = [name for name in ("softening", "volume", "viscosity") if f"[{name}" in added and re.search(rf"(?m)^\[+{name}\b", self.text)]
         if stated:

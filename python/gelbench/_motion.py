@@ -7,10 +7,10 @@ from typing import Any
 
 from . import _core
 from ._errors import fault
-from ._material import in_memory
+from ._material import in_memory, viscosity_sections
 from ._plate import Plate
 from ._progress import Progress, callback
-from ._quantities import Quantity, text, toml
+from ._quantities import Quantity, text, texts, toml
 from ._results import Results
 from ._specimen import Specimen
 from ._study import Files, Settings, merged
@@ -19,6 +19,9 @@ __all__ = ["Motion"]
 
 UNITS = {"amplitude": "", "frequency": "Hz", "to": "", "begin": "s", "end": "s", "time": "s", "stretches": "", "factors": "", "times": "s"}
 """Units of plain numbers of a drive."""
+
+DEFAULTS: dict[Any, dict[str, Any]] = {"release": {"time": 0.0}, "ramp": {"begin": 0.0}}
+"""What a drive begins with where it says nothing else."""
 
 ARGUMENTS = {
     "kind": "it is that of a motion",
@@ -54,7 +57,7 @@ class Motion:
     start : quantity
         The stretch of a plate, or the load factor of a specimen, at which the sheet was held before.
     drive : mapping
-        ``{"motion": "hold"}``, ``{"motion": "release", "time": 0}``, ``{"motion": "ramp", "to": 0.5, "end": 0.1}``,
+        ``{"motion": "hold"}``, ``{"motion": "release"}``, ``{"motion": "ramp", "to": 0.5, "end": 0.1}``,
         ``{"motion": "sine", "amplitude": 0.05, "frequency": 2}``, or ``{"motion": "table", "times": […], "stretches": […]}`` of a plate and
         ``"factors"`` of a specimen; plain numbers are ratios, s and Hz.
     interval : quantity, optional
@@ -64,7 +67,7 @@ class Motion:
     viscosity : mapping, optional
         Instead of the card's: ``{"shear": "50 Pa*s"}``, ``{"relaxation": [{"share": 0.3, "time": "2 s"}]}``, or both.
     gravity : tuple of quantity, optional
-        Acceleration in the plane of the sheet, such as ``("0 m/s^2", "-9.81 m/s^2")``.
+        Acceleration in the plane of the sheet [mm/s²], such as ``(0, "-9.81 m/s^2")``.
     probes : mapping, optional
         Points at rest by name [mm], whose displacement and velocity are reported.
     settings : mapping, optional
@@ -111,14 +114,9 @@ class Motion:
         }
         if gravity is not None:
             x, y = gravity
-            own["gravity"] = {"x": text(x, "m/s^2", "gravity"), "y": text(y, "m/s^2", "gravity")}
-        own |= _of_sheet(sheet, text(start, "", "start"), {key: _texts(value, key) for key, value in drive.items()})
-        viscous = dict(viscosity or {})
-        terms = viscous.pop("relaxation", [])
-        if viscous:
-            own["material.viscosity"] = viscous
-        if terms:
-            own["material.viscosity.relaxation"] = [dict(term) for term in terms]
+            own["gravity"] = {"x": text(x, "mm/s^2", "gravity"), "y": text(y, "mm/s^2", "gravity")}
+        own |= _of_sheet(sheet, text(start, "", "start"), texts({**DEFAULTS.get(drive.get("motion"), {}), **drive}, UNITS, "drive"))
+        own |= viscosity_sections(viscosity, "material.viscosity")
         self._sections = merged(own, settings, ARGUMENTS)
         study, files = self._here()
         _core.check("motion", False, study, files)
@@ -166,15 +164,6 @@ def _of_sheet(sheet: Plate | Specimen, start: str, drive: dict[str, Any]) -> dic
     conditions = {name: own for name, own in sheet._conditions.items() if own}
     path = {**drive, "measured_group": sheet._measured}
     return {**kept, **conditions, "start": {"factor": start}, "path": path}
-
-
-def _texts(value: Any, key: str) -> Any:
-    """Plain numbers of a drive as texts with their unit."""
-    if key not in UNITS:
-        return value
-    if isinstance(value, (str, bytes)) or not hasattr(value, "__iter__"):
-        return text(value, UNITS[key], f"drive.{key}")
-    return [text(one, UNITS[key], f"drive.{key}") for one in value]
 
 
 def _hundredth(duration: str) -> str:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from . import _core
 from ._errors import fault
 
-__all__ = ["Floats", "PathLike", "Quantity", "SupportsUnits", "finite", "floats", "magnitudes", "number", "text", "toml", "whole"]
+__all__ = ["Floats", "PathLike", "Quantity", "SupportsUnits", "as_stated", "finite", "floats", "magnitudes", "number", "text", "texts", "toml", "pint_unit", "whole"]
 
 Floats: TypeAlias = NDArray[np.float64]
 PathLike: TypeAlias = "str | os.PathLike[str]"
@@ -33,10 +33,35 @@ Quantity: TypeAlias = "float | str | SupportsUnits"
 """A number in mm, N or MPa, a text with a unit such as ``"5 cm"``, or a quantity of pint."""
 
 
+def pint_unit(value: SupportsUnits) -> str:
+    """The unit of a pint quantity as in studies: ``N/mm^2``."""
+    return f"{getattr(value, 'units', ''):~C}".replace("**", "^")
+
+
+def as_stated(value: SupportsUnits) -> str:
+    """A pint quantity as a text in its own unit."""
+    return f"{float(value.magnitude)!r} {pint_unit(value)}".rstrip()
+
+
+def texts(values: Mapping[str, Any], units: Mapping[str, str], argument: str) -> dict[str, Any]:
+    """The values of keys as in a study's text: those of keys with a unit, alone or in lists, as quantities."""
+
+    def of(key: str, value: Any) -> Any:
+        if key not in units:
+            return value
+        if isinstance(value, (str, bytes)) or not np.iterable(value):
+            return text(value, units[key], f"{argument}.{key}")
+        return [text(one, units[key], f"{argument}.{key}") for one in value]
+
+    return {key: of(key, value) for key, value in values.items()}
+
+
 def text(value: Any, unit: str, argument: str) -> str:
     """A quantity as in a study's text; `unit` applies to plain numbers."""
     if isinstance(value, str):
         return value
+    if isinstance(value, SupportsUnits) and not unit:
+        return as_stated(value)
     if isinstance(value, SupportsUnits):
         value = converted(value, unit, argument)
     try:
@@ -137,6 +162,8 @@ def scalar(value: Any) -> str | None:
 
 
 def _value(value: Any) -> str:
+    if isinstance(value, SupportsUnits) and np.ndim(value.magnitude) == 0:
+        value = as_stated(value)
     text = scalar(value)
     if text is not None:
         return text

@@ -14,7 +14,7 @@ from . import _core
 from ._errors import fault
 from ._plate import Plate
 from ._progress import Progress, callback
-from ._quantities import PathLike, SupportsUnits, converted, refuse_masked, scalar, whole
+from ._quantities import PathLike, SupportsUnits, as_stated, converted, pint_unit, refuse_masked, scalar, whole
 from ._specimen import Specimen
 from ._study import Factors
 from ._sweep_table import Column, SweepTable
@@ -48,15 +48,10 @@ def _word(value: Any, key: str, unit: str = "") -> str:
     if text is not None:
         return f"{text} {unit}".rstrip()
     if isinstance(value, SupportsUnits):
-        return f"{float(value.magnitude)!r} {_unit(value)}".rstrip()
+        return as_stated(value)
     if isinstance(value, (str, os.PathLike)):
         return os.fspath(value)
     raise fault(f"parameters.{key}", f"{value!r} is not a value of a key", "give numbers, texts or quantities")
-
-
-def _unit(value: SupportsUnits) -> str:
-    """The unit of a pint quantity as in studies: ``N/mm^2``."""
-    return f"{getattr(value, 'units', ''):~C}".replace("**", "^")
 
 
 def _is_single(values: Any) -> bool:
@@ -88,7 +83,7 @@ def _columns(points: Points | None, unit_of: UnitOf) -> list[tuple[str, list[str
         _refuse_masked(own, f"points.{name}")
         if isinstance(own, SupportsUnits):
             if not name.endswith("]"):
-                unit = _unit(own)
+                unit = pint_unit(own)
                 name = f"{name} [{unit}]" if unit else name
             own = converted(own, name.rpartition("[")[2].rstrip("]") if name.endswith("]") else "", f"points.{name}")
         values: Iterable[Any] = np.asarray(own).ravel().tolist()

@@ -58,3 +58,20 @@ def test_faults_are_raised_at_once(arguments, words):
 def test_other_sheets_are_refused():
     with pytest.raises(gb.InputError, match="Plate or a Specimen"):
         gb.Motion("plate.toml", "2 ms", drive={"motion": "hold"})
+
+
+def test_a_drive_has_its_defaults_and_mappings_take_quantities():
+    pint = pytest.importorskip("pint")
+    quantity = pint.UnitRegistry().Quantity
+
+    def study(drive, **more):
+        return gb.Motion(plate(), "10 ms", start=0.1, drive=drive, density=quantity(1020, "kg/m^3"), **more).study()
+
+    assert study({"motion": "release"}) == study({"motion": "release", "time": quantity(0, "s")})
+    assert study({"motion": "ramp", "to": 0.2, "end": 0.1}) == study({"motion": "ramp", "to": 0.2, "begin": 0, "end": "0.1 s"})
+    viscous = {"relaxation": [{"share": 0.3, "time": quantity(2, "s")}]}
+    assert 'time = "2.0 s"' in study({"motion": "hold"}, viscosity=viscous)
+    assert 'y = "-9810.0 mm/s^2"' in study({"motion": "hold"}, gravity=(0, -9810))
+    material = gb.Material("neo-hooke", c10=quantity(50, "kPa"))
+    assert material.shear_modulus == pytest.approx(0.1)
+    assert 'bulk_modulus = "5.0 MPa"' in material.with_properties(volume={"bulk_modulus": 5}).text

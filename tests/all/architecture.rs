@@ -88,8 +88,8 @@ const LONG_FUNCTION: (usize, usize) = (60, 8);
 const LONGEST_FUNCTION: usize = 80;
 
 fn floor(module: &str) -> usize {
-    let found = FLOORS.iter().position(|floor| floor.contains(&module));
-    found.unwrap_or_else(|| panic!("`{module}` has no floor"))
+    let result = FLOORS.iter().position(|floor| floor.contains(&module));
+    result.unwrap_or_else(|| panic!("`{module}` has no floor"))
 }
 
 /// The files that can be reached from one.
@@ -116,12 +116,12 @@ fn circles(arrows: &Arrows) -> Vec<String> {
             .collect::<Vec<_>>()
             .join(", ")
     };
-    let found: BTreeSet<String> = arrows
+    let result: BTreeSet<String> = arrows
         .keys()
         .map(circle)
-        .filter(|found| !found.is_empty())
+        .filter(|result| !result.is_empty())
         .collect();
-    found.into_iter().collect()
+    result.into_iter().collect()
 }
 
 #[test]
@@ -142,8 +142,8 @@ fn imports_go_downward_only() {
 
 #[test]
 fn no_files_import_each_other_in_a_circle() {
-    let found = circles(&Sources::of_workspace().arrows());
-    assert!(found.is_empty(), "{} circles: {found:#?}", found.len());
+    let result = circles(&Sources::of_workspace().arrows());
+    assert!(result.is_empty(), "{} circles: {result:#?}", result.len());
 }
 
 #[test]
@@ -158,11 +158,11 @@ fn a_circle_would_be_seen() {
     arrows.insert(module("c"), BTreeSet::from([module("a")]));
     assert_eq!(circles(&arrows), ["a, b, c"]);
     let paths = expand("super::{a::{self, B as C}, d}", &[]);
-    let told: Vec<String> = paths
+    let message: Vec<String> = paths
         .iter()
         .map(|(path, name)| format!("{} {name}", path.join("::")))
         .collect();
-    assert_eq!(told, ["super::a a", "super::a::B C", "super::d d"]);
+    assert_eq!(message, ["super::a a", "super::a::B C", "super::d d"]);
 }
 
 #[test]
@@ -173,9 +173,9 @@ fn files_and_functions_are_short() {
         let lines = fs::read_to_string(&source.path).unwrap().lines().count();
         assert!(lines <= LONGEST_FILE, "{file} has {lines} lines");
         for (name, lines) in functions(&source.code) {
-            let told = format!("{file}: {name} has {lines} lines");
-            assert!(lines <= LONGEST_FUNCTION, "{told}");
-            long.extend((lines > LONG_FUNCTION.0).then_some(told));
+            let message = format!("{file}: {name} has {lines} lines");
+            assert!(lines <= LONGEST_FUNCTION, "{message}");
+            long.extend((lines > LONG_FUNCTION.0).then_some(message));
         }
     }
     assert!(long.len() <= LONG_FUNCTION.1, "{long:#?}");

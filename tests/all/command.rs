@@ -46,10 +46,10 @@ fn the_pva_plate_study_reaches_its_accuracy() {
         assert!(number(step, &["mass_spring", "departure_percent"]) > 20.0);
         let own = number(step, &["finite_element", "measured_discretisation_percent"]);
         assert!(own < 0.01, "{own}");
-        let found = number(step, &["finite_element", "force_N"]);
-        assert!((found / force - 1.0).abs() < 1e-5, "{found} {force}");
-        let found = number(step, &["finite_element", "width_mm"]);
-        assert!((found / width - 1.0).abs() < 1e-6, "{found} {width}");
+        let actual = number(step, &["finite_element", "force_N"]);
+        assert!((actual / force - 1.0).abs() < 1e-5, "{actual} {force}");
+        let actual = number(step, &["finite_element", "width_mm"]);
+        assert!((actual / width - 1.0).abs() < 1e-6, "{actual} {width}");
         for key in ["max_difference_mm", "force_N", "width_mm"] {
             assert!(
                 number(step, &["mass_spring", key]) > 0.0
@@ -167,7 +167,7 @@ fn faults_of_a_study_are_told_at_once_with_code_2() {
     );
     let folder = folder_with(&study.replace("[plate]", "[material]\ncard = \"pva10\"\n[plate]"));
     let done = gelbench(folder.path(), &["check", "small.toml"]).code(2);
-    let told = words(&done.get_output().stderr);
+    let message = words(&done.get_output().stderr);
     for expected in [
         "did you mean `pva-10`",
         "plate.cels",
@@ -175,7 +175,7 @@ fn faults_of_a_study_are_told_at_once_with_code_2() {
         "needs a unit",
         "small.toml:5",
     ] {
-        assert!(told.contains(expected), "{expected}: {told}");
+        assert!(message.contains(expected), "{expected}: {message}");
     }
     gelbench(folder.path(), &["run", "small.toml"]).code(2);
     assert!(!folder.path().join("output").exists(), "nothing is written");
@@ -241,10 +241,11 @@ fn where_the_springs_end_the_other_models_are_complete() {
         );
         let folder = folder_with(&study);
         let done = gelbench(folder.path(), &["run", "small.toml"]).code(3);
-        let told = words(&done.get_output().stdout);
+        let message = words(&done.get_output().stdout);
         assert!(
-            told.contains("FAIL mass-spring at 20 % stretch") && told.contains("(take smaller"),
-            "{told}"
+            message.contains("FAIL mass-spring at 20 % stretch")
+                && message.contains("(take smaller"),
+            "{message}"
         );
         let report = report_of(&folder);
         assert_eq!(judgements(&report), ["pass", "pass", "pass", "FAIL"]);
@@ -400,10 +401,10 @@ fn cards_are_listed_and_shown() {
             .exists()
     );
     let done = gelbench(folder.path(), &["materials", "compare", "pva", "neo"]).code(2);
-    let told = words(&done.get_output().stderr);
+    let message = words(&done.get_output().stderr);
     assert!(
-        told.contains("`pva`") && told.contains("`neo`"),
-        "both are named: {told}"
+        message.contains("`pva`") && message.contains("`neo`"),
+        "both are named: {message}"
     );
 }
 
@@ -445,6 +446,9 @@ fn several_studies_are_checked_and_run_one_after_the_other() {
         );
     }
     let twice = gelbench(folder.path(), &["run", "a.toml", "./a.toml"]).code(2);
-    let told = words(&twice.get_output().stderr);
-    assert!(told.contains("two studies have the name `a`"), "{told}");
+    let message = words(&twice.get_output().stderr);
+    assert!(
+        message.contains("two studies have the name `a`"),
+        "{message}"
+    );
 }

@@ -51,7 +51,7 @@ const FORCE: f64 = 12.875;
 fn markers_that_end_inside_the_edge_leave_the_force_open() {
     let inner = second_frame(|[x, y]| (1.0..149.0).contains(&x) && (1.0..49.0).contains(&y));
     // The outermost markers are no grips then: that they moved as rigid ones is contradicted.
-    let (printed, found) = corrected(&inner, &[], NOT_EXPLAINED);
+    let (printed, result) = corrected(&inner, &[], NOT_EXPLAINED);
     assert!(
         printed.contains("the data contradict the stated condition on right, left")
             || printed.contains("the data contradict the stated condition on left, right"),
@@ -62,22 +62,22 @@ fn markers_that_end_inside_the_edge_leave_the_force_open() {
         "{printed}"
     );
     // No interval says more than is known.
-    let frame = &found["steps"][0]["corrected"];
+    let frame = &result["steps"][0]["corrected"];
     for force in frame["forces"].as_array().unwrap() {
         assert!(force["x_N"]["value"].is_number() && force["x_N"]["interval"].is_null());
     }
     assert!(printed.contains("interval: not explained"), "{printed}");
     // Grips that are not said to be rigid: the interval holds an edge that is nobody's knowledge.
     let loose = ["--study", "loose.toml"];
-    let (_, found) = loosely_corrected(&inner, &loose);
-    let [force, low, high] = right_force(&found);
+    let (_, result) = loosely_corrected(&inner, &loose);
+    let [force, low, high] = right_force(&result);
     assert!(
         force < 0.85 * FORCE && low < force && high > FORCE,
         "{force} {low} {high}"
     );
     // Said, the force is right and sure.
-    let (_, found) = corrected(&inner, &["--edge-gap", "5 mm"], 0);
-    let [force, low, high] = right_force(&found);
+    let (_, result) = corrected(&inner, &["--edge-gap", "5 mm"], 0);
+    let [force, low, high] = right_force(&result);
     assert!((force / FORCE - 1.0).abs() < 0.01, "{force}");
     assert!(
         low < FORCE && high > FORCE && high - low < 0.03 * FORCE,
@@ -103,22 +103,22 @@ fn half_a_subset_lies_between_the_outermost_markers_and_the_edge() {
         "***\n*** Subset size: 10\n*** Step size: x 5 y 5 (-1 implies not regular grid)\n***\n\
          COORDINATE_X,COORDINATE_Y,DISPLACEMENT_X,DISPLACEMENT_Y,MATCH\n{rows}"
     );
-    let (printed, found) = corrected(&dice, &["--unit", "1 mm", "--cell-size", "10 mm"], 0);
-    let told = "assumed to lie 5.0000 mm outside the outermost markers, half a subset";
-    assert!(printed.contains(told), "{printed}");
-    let origin = found["problem"]["mesh"]["origin"].as_str().unwrap();
+    let (printed, result) = corrected(&dice, &["--unit", "1 mm", "--cell-size", "10 mm"], 0);
+    let message = "assumed to lie 5.0000 mm outside the outermost markers, half a subset";
+    assert!(printed.contains(message), "{printed}");
+    let origin = result["problem"]["mesh"]["origin"].as_str().unwrap();
     assert!(
         origin.contains("widened by 5.0000 mm, half a subset (subset 10 and step 5 pixels according to the header of plate.csv)"),
         "{origin}"
     );
-    let [force, low, high] = right_force(&found);
+    let [force, low, high] = right_force(&result);
     assert!((force / FORCE - 1.0).abs() < 0.01, "{force}");
     // Up to a step farther out is left open.
     assert!(low < FORCE && high > 1.1 * FORCE, "{low} {high}");
-    let step = number(&found, &["problem", "edge_may_lie_farther_out_by_mm"]);
+    let step = number(&result, &["problem", "edge_may_lie_farther_out_by_mm"]);
     assert!((step - 5.0).abs() < 1e-9, "{step}");
     // What the user says goes before.
-    let (printed, found) = corrected(
+    let (printed, result) = corrected(
         &dice,
         &[
             "--unit",
@@ -131,38 +131,38 @@ fn half_a_subset_lies_between_the_outermost_markers_and_the_edge() {
         0,
     );
     assert!(!printed.contains("half a subset"), "{printed}");
-    assert!(found["problem"]["edge_may_lie_farther_out_by_mm"].is_null());
+    assert!(result["problem"]["edge_may_lie_farther_out_by_mm"].is_null());
 }
 
 #[test]
 fn what_the_data_contradict_stands_beside_the_figures_and_in_the_exit_code() {
     let gap = ["--edge-gap", "0 mm"];
-    let whole = second_frame(|_| true);
-    let (printed, found) = corrected(&whole, &gap, 0);
+    let complete = second_frame(|_| true);
+    let (printed, result) = corrected(&complete, &gap, 0);
     assert!(!printed.contains("doubtful"), "{printed}");
     assert!(
         printed.contains("verdict, frame 1: explained\n"),
         "{printed}"
     );
-    assert!(number(&found, &["balance", "worst"]) < 1e-9);
-    let [_, low, high] = right_force(&found);
+    assert!(number(&result, &["balance", "worst"]) < 1e-9);
+    let [_, low, high] = right_force(&result);
     assert!(low < FORCE && high > FORCE, "{low} {high}");
     let cut = second_frame(|[x, _]| x < 101.0);
-    for (text, more, told, code) in [
+    for (text, more, message, code) in [
         (
-            &whole,
+            &complete,
             vec!["--force", "right x 6.4 N ± 0.1 N"],
             "contradicts the field's",
             NOT_EXPLAINED,
         ),
         (
-            &whole,
+            &complete,
             vec!["--thickness", "1 mm", "--force", "right x 12.9 N ± 0.1 N"],
             "contradicts the field's",
             NOT_EXPLAINED,
         ),
         (
-            &whole,
+            &complete,
             vec!["--noise", "0.0005 mm"],
             "times as much as their stated noise, more than chance allows: the stated noise is rescaled",
             1,
@@ -174,17 +174,17 @@ fn what_the_data_contradict_stands_beside_the_figures_and_in_the_exit_code() {
             NOT_EXPLAINED,
         ),
     ] {
-        let (printed, found) = corrected(text, &[&gap[..], &more].concat(), code);
+        let (printed, result) = corrected(text, &[&gap[..], &more].concat(), code);
         assert!(
-            printed.contains("doubtful") && printed.contains(told),
+            printed.contains("doubtful") && printed.contains(message),
             "{more:?}: {printed}"
         );
-        let doubts = found["doubts"].as_array().unwrap();
-        let beside = |doubt: &Value| doubt.as_str().unwrap().contains(told);
-        assert!(doubts.iter().any(beside), "{doubts:?}");
+        let doubts = result["doubts"].as_array().unwrap();
+        let adjacent = |doubt: &Value| doubt.as_str().unwrap().contains(message);
+        assert!(doubts.iter().any(adjacent), "{doubts:?}");
         if code == 1 {
             // The scaled noise has intervals that hold.
-            let [_, low, high] = right_force(&found);
+            let [_, low, high] = right_force(&result);
             assert!(low < FORCE && high > FORCE, "{low} {high}");
         } else {
             assert!(printed.contains("not explained by this law, thickness and conditions"));
@@ -215,17 +215,17 @@ fn with_smooth_noise(across: usize) -> String {
 
 #[test]
 fn noise_that_correlates_is_told_and_held_by_the_intervals() {
-    let (printed, found) = corrected(&with_smooth_noise(2), &["--edge-gap", "0 mm"], 0);
+    let (printed, result) = corrected(&with_smooth_noise(2), &["--edge-gap", "0 mm"], 0);
     assert!(
         printed.contains("explained with correlated noise"),
         "{printed}"
     );
     let length = number(
-        &found["steps"][0]["corrected"],
+        &result["steps"][0]["corrected"],
         &["verdict", "correlation_length_mm"],
     );
     assert!((2.5..15.0).contains(&length), "{length}");
-    let [_, low, high] = right_force(&found);
+    let [_, low, high] = right_force(&result);
     assert!(
         low < FORCE && high > FORCE && high - low > 0.01 * FORCE,
         "{low} {high}"
@@ -234,13 +234,13 @@ fn noise_that_correlates_is_told_and_held_by_the_intervals() {
 
 #[test]
 fn noise_of_which_few_independent_values_are_left_cannot_be_judged() {
-    let (printed, found) = corrected(&with_smooth_noise(4), &["--edge-gap", "0 mm"], 1);
+    let (printed, result) = corrected(&with_smooth_noise(4), &["--edge-gap", "0 mm"], 1);
     assert!(
         printed.contains("the data cannot judge") && printed.contains("too few to tell noise"),
         "{printed}"
     );
     assert!(!printed.contains("not explained"), "{printed}");
-    let [_, low, high] = right_force(&found);
+    let [_, low, high] = right_force(&result);
     assert!(low < FORCE && high > FORCE, "{low} {high}");
 }
 
@@ -251,14 +251,14 @@ fn half_of_the_markers_lost_gives_no_interval_that_lies() {
     let index = |[x, y]: [f64; 2]| 11 * (x / 5.0).round() as usize + (y / 5.0).round() as usize;
     let half = second_frame(|position| kept[index(position)]);
     // The outline cuts corners of the specimen there: its sides are not free.
-    let (printed, found) = corrected(&half, &[], NOT_EXPLAINED);
+    let (printed, result) = corrected(&half, &[], NOT_EXPLAINED);
     assert!(
         printed.contains("the outline of the markers is uncertain"),
         "{printed}"
     );
     assert!(printed.contains("interval: not explained"), "{printed}");
     assert_eq!(
-        found["steps"][0]["corrected"]["forces"][0]["x_N"]["interval"],
+        result["steps"][0]["corrected"]["forces"][0]["x_N"]["interval"],
         Value::Null
     );
     // Where lost markers still have rows, their places are the outline.
@@ -271,8 +271,8 @@ fn half_of_the_markers_lost_gives_no_interval_that_lies() {
             _ => format!("{row}\n"),
         })
         .collect();
-    let (_, found) = corrected(&rows, &["--edge-gap", "0 mm"], 0);
-    let [_, low, high] = right_force(&found);
+    let (_, result) = corrected(&rows, &["--edge-gap", "0 mm"], 0);
+    let [_, low, high] = right_force(&result);
     assert!(
         low < FORCE && high > FORCE && high - low < 0.03 * FORCE,
         "{low} {high}"
@@ -336,16 +336,16 @@ fn cells_that_are_given_are_not_made_smaller() {
         "2 mm",
         "--refine",
     ];
-    let said = |more: &[&str]| {
+    let output = |more: &[&str]| {
         let done = gelbench(folder.path(), &[&usual[..], more].concat()).code(2);
         words(&done.get_output().stderr)
     };
-    let together = said(&["--together"]);
+    let together = output(&["--together"]);
     assert!(
         together.contains("--refine") && together.contains("--together"),
         "{together}"
     );
     let mesh = root().join("validation/measured/skin_forearm/skin_mesh.msh");
-    let given = said(&["--mesh", mesh.to_str().unwrap()]);
+    let given = output(&["--mesh", mesh.to_str().unwrap()]);
     assert!(given.contains("leave out --refine"), "{given}");
 }

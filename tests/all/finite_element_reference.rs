@@ -66,8 +66,8 @@ fn compare(material: &str, cells: [usize; 2], element: Element) {
             .iter()
             .find(|solution| solution.factor == stretch)
             .unwrap();
-        let found = Measures::of(&model.mesh, solution);
-        let computed = [found.force, found.mid_width, found.energy];
+        let actual = Measures::of(&model.mesh, solution);
+        let computed = [actual.force, actual.mid_width, actual.energy];
         for (name, (computed, expected)) in ["force", "width", "energy"]
             .iter()
             .zip(computed.iter().zip(values))
@@ -140,9 +140,9 @@ fn q2_reproduces_the_displacements_of_another_code() {
                 .iter()
                 .find(|solution| solution.factor == stretch)
                 .unwrap();
-            let found = model.mesh.displacement_at(&solution.displacement, [x, y]);
+            let actual = model.mesh.displacement_at(&solution.displacement, [x, y]);
             let largest = 150.0 * stretch;
-            worst = worst.max((found[0] - ux).abs().max((found[1] - uy).abs()) / largest);
+            worst = worst.max((actual[0] - ux).abs().max((actual[1] - uy).abs()) / largest);
             rows += 1;
         }
         assert_eq!(rows, 5 * 31 * 11);

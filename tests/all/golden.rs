@@ -27,13 +27,13 @@ fn figures(arguments: &[&str]) -> String {
 
 fn check(name: &str, arguments: &[&str]) {
     let path = root().join(format!("validation/golden/{name}.txt"));
-    let found = figures(arguments);
+    let result = figures(arguments);
     if std::env::var("GELBENCH_GOLDEN").is_ok_and(|wanted| wanted == "write") {
         fs::create_dir_all(path.parent().unwrap_or(Path::new("."))).unwrap();
-        return fs::write(path, found).unwrap();
+        return fs::write(path, result).unwrap();
     }
     let golden = fs::read_to_string(path).unwrap();
-    let pairs: Vec<_> = found.lines().zip(golden.lines()).collect();
+    let pairs: Vec<_> = result.lines().zip(golden.lines()).collect();
     for (line, (one, other)) in pairs.iter().enumerate() {
         assert!(
             agree(one, other),
@@ -41,7 +41,7 @@ fn check(name: &str, arguments: &[&str]) {
             line + 1
         );
     }
-    assert_eq!(found.lines().count(), golden.lines().count(), "{name}");
+    assert_eq!(result.lines().count(), golden.lines().count(), "{name}");
 }
 
 macro_rules! examples {

@@ -33,22 +33,22 @@ fn corrected(markers: &str, options: &[&str]) -> (String, Value) {
     let more = ["--thickness", "2 mm"];
     let done = gelbench(folder.path(), &[&usual[..], &more, options].concat());
     let written = fs::read_to_string(folder.path().join("output/correct/report.md")).unwrap();
-    let said = words(&done.get_output().stdout) + &written;
+    let printed = words(&done.get_output().stdout) + &written;
     let report = report_of_correction(folder.path());
-    (said, report["steps"][0]["corrected"].clone())
+    (printed, report["steps"][0]["corrected"].clone())
 }
 
 #[test]
 fn gross_errors_have_no_say_unless_it_is_said_that_they_have() {
     const TOLD: &str = "farther off than noise can explain";
     let weighted = |weights: &[&str]| corrected(&markers(), &[&EDGES, weights].concat());
-    let (text, found) = weighted(&[]);
-    assert_eq!(found["weights"], "tukey");
-    assert!((found["noise_mm"].as_f64().unwrap() / NOISE - 1.0).abs() < 0.1);
+    let (text, result) = weighted(&[]);
+    assert_eq!(result["weights"], "tukey");
+    assert!((result["noise_mm"].as_f64().unwrap() / NOISE - 1.0).abs() < 0.1);
     // Of both frames at once, in the terminal and in the report.
     assert_eq!(text.matches(TOLD).count(), 2, "{text}");
-    let (_, said) = weighted(&["--robust", "tukey"]);
-    assert_eq!(found["forces"], said["forces"]);
+    let (_, printed) = weighted(&["--robust", "tukey"]);
+    assert_eq!(result["forces"], printed["forces"]);
     let (text, all) = weighted(&["--robust", "no"]);
     assert_eq!(all["weights"], "no");
     assert!(all["noise_mm"].as_f64().unwrap() > 2.0 * NOISE);
@@ -65,9 +65,9 @@ fn gross_errors_that_keep_an_estimate_from_being_found_have_no_say() {
             || (!["0", "150"].contains(&position[1]) && !["0", "50"].contains(&position[2]))
     };
     let inside: Vec<&str> = text.lines().filter(is_inside).collect();
-    let (_, found) = corrected(&inside.join("\n"), &[]);
-    assert_eq!(found["weights"], "tukey");
-    assert!((found["noise_mm"].as_f64().unwrap() / NOISE - 1.0).abs() < 0.1);
+    let (_, result) = corrected(&inside.join("\n"), &[]);
+    assert_eq!(result["weights"], "tukey");
+    assert!((result["noise_mm"].as_f64().unwrap() / NOISE - 1.0).abs() < 0.1);
 }
 
 /// The first frame with every third marker anywhere, and what more there is of it.
@@ -92,9 +92,9 @@ fn with_a_third_anywhere() -> String {
 
 #[test]
 fn many_gross_errors_that_lie_scattered_have_no_say_and_are_a_doubt() {
-    let (text, found) = corrected(&with_a_third_anywhere(), &EDGES);
-    assert_eq!(found["weights"], "tukey", "{text}");
-    let noise = found["noise_mm"].as_f64().unwrap();
+    let (text, result) = corrected(&with_a_third_anywhere(), &EDGES);
+    assert_eq!(result["weights"], "tukey", "{text}");
+    let noise = result["noise_mm"].as_f64().unwrap();
     // The median of all, of which two thirds have noise alone, lies at the three quarters of these: 1.41 times as far.
     assert!((1.0..1.7).contains(&(noise / NOISE)), "{noise}");
     assert!(
@@ -102,12 +102,12 @@ fn many_gross_errors_that_lie_scattered_have_no_say_and_are_a_doubt() {
         "{text}"
     );
     // Without weights their size is taken for noise, by which nothing can be judged.
-    let (text, found) = corrected(
+    let (text, result) = corrected(
         &with_a_third_anywhere(),
         &[&EDGES[..], &["--robust", "no"]].concat(),
     );
-    assert!(found["noise_mm"].as_f64().unwrap() > 5.0 * NOISE);
-    let verdict = &found["verdict"];
+    assert!(result["noise_mm"].as_f64().unwrap() > 5.0 * NOISE);
+    let verdict = &result["verdict"];
     assert_eq!(verdict["answer"], "the data cannot judge", "{text}");
     assert!(text.contains("interval: the noise is that of gross errors"));
     assert!(text.contains("of the specimen's smaller extent"), "{text}");
@@ -151,14 +151,17 @@ fn a_frame_that_cannot_be_corrected_leaves_the_others_theirs() {
     let more = ["--thickness", "2 mm", "--study", "known.toml"];
     let arguments = [&usual[..], &more, &EDGES].concat();
     let done = gelbench(folder.path(), &arguments).code(1);
-    let told = words(&done.get_output().stderr);
-    assert!(told.contains("no marker moves in frame 3"), "{told}");
-    let told = words(&done.get_output().stdout);
+    let message = words(&done.get_output().stderr);
+    assert!(message.contains("no marker moves in frame 3"), "{message}");
+    let message = words(&done.get_output().stdout);
     assert!(
-        told.contains("frame 4: 2 of 2 markers lie on the mesh, and at least three are needed"),
-        "{told}"
+        message.contains("frame 4: 2 of 2 markers lie on the mesh, and at least three are needed"),
+        "{message}"
     );
-    assert!(told.matches("the frame is left out").count() == 2, "{told}");
+    assert!(
+        message.matches("the frame is left out").count() == 2,
+        "{message}"
+    );
     let report = report_of_correction(folder.path());
     let frames: Vec<&Value> = report["steps"]
         .as_array()

@@ -91,12 +91,12 @@ fn curves_of_force_begin_at_rest_and_have_no_point_that_was_not_computed() {
         let mut expected = forces(results, &key);
         expected.insert(0, [0.0; 2]);
         assert_eq!(line.points.len(), expected.len(), "{}", line.label);
-        for (found, expected) in line.points.iter().zip(expected) {
+        for (actual, expected) in line.points.iter().zip(expected) {
             let size = expected[1].abs();
-            assert_eq!(found[0], expected[0]);
+            assert_eq!(actual[0], expected[0]);
             assert!(
-                (found[1].abs() - size).abs() <= 1e-6 * size.max(1.0),
-                "{found:?} {expected:?}"
+                (actual[1].abs() - size).abs() <= 1e-6 * size.max(1.0),
+                "{actual:?} {expected:?}"
             );
         }
         assert!(line.is_dashed_between_points());

@@ -56,8 +56,11 @@ fn a_recording_that_cannot_be_read_is_refused_and_nothing_is_written() {
     let here = folder.path();
     fs::write(here.join("bad.csv"), "time [s],force [N]\n0,1\n1,2\n").unwrap();
     let refused = gelbench(here, &["identify", "bad.csv", "--output", "law"]).code(2);
-    let told = words(&refused.get_output().stderr);
-    assert!(told.contains("there is no column of the motion"), "{told}");
+    let message = words(&refused.get_output().stderr);
+    assert!(
+        message.contains("there is no column of the motion"),
+        "{message}"
+    );
     assert!(!here.join("law").exists());
     gelbench(here, &["identify"]).code(2);
     gelbench(here, &["identify", "bad.csv", "--stiffness", "cubic"]).code(2);

@@ -94,13 +94,13 @@ fn two_specimens_give_two_parameters_a_card_and_a_ranking() {
         printed.contains("strip a (3 frames), strip b (3 frames)"),
         "{printed}"
     );
-    let found = report_of_correction(folder.path());
-    let parameters = found["problem"]["parameters"].as_array().unwrap();
+    let actual = report_of_correction(folder.path());
+    let parameters = actual["problem"]["parameters"].as_array().unwrap();
     for (parameter, truth) in parameters.iter().zip(TRUTH) {
         let interval: [f64; 2] = [0, 1].map(|end| parameter["interval"][end].as_f64().unwrap());
         assert!(interval[0] < truth && truth < interval[1], "{parameter}");
     }
-    let laws = found["problem"]["laws"].as_array().unwrap();
+    let laws = actual["problem"]["laws"].as_array().unwrap();
     assert_eq!(laws[0]["card"], "mooney-rivlin", "{laws:?}");
     assert!(number(&laws[1], &["aicc_above_least"]) > 10.0, "{laws:?}");
     let card = Card::load("output/correct/card.toml", folder.path()).unwrap();
@@ -132,8 +132,8 @@ fn a_wrong_thickness_of_one_specimen_is_told_and_leaves_no_interval() {
         printed.contains("no interval: not all frames are explained"),
         "{printed}"
     );
-    let found = report_of_correction(folder.path());
-    assert!(found["problem"]["parameters"][0]["interval"].is_null());
+    let actual = report_of_correction(folder.path());
+    assert!(actual["problem"]["parameters"][0]["interval"].is_null());
 }
 
 #[test]
@@ -165,11 +165,11 @@ fn faults_of_specimens_name_the_remedy() {
             "has a [specimen]",
         ),
     ];
-    for (arguments, told) in cases {
+    for (arguments, message) in cases {
         let all = [&["correct", "--material", "mooney-rivlin"], arguments].concat();
         let failed = gelbench(folder.path(), &all).code(2);
         let printed = words(&failed.get_output().stderr);
-        assert!(printed.contains(told), "{told}: {printed}");
+        assert!(printed.contains(message), "{message}: {printed}");
     }
     assert!(!folder.path().join("output").exists());
 }
@@ -200,8 +200,8 @@ fn the_example_gives_what_the_guide_says() {
         "--together",
     ];
     gelbench(folder.path(), &arguments).success();
-    let found = report_of_correction(folder.path());
-    let combinations = found["problem"]["combinations"].as_array().unwrap();
+    let actual = report_of_correction(folder.path());
+    let combinations = actual["problem"]["combinations"].as_array().unwrap();
     assert_eq!(combinations.len(), 3);
     assert!(combinations[0]["is_determined"].as_bool().unwrap());
 }

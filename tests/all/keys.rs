@@ -135,10 +135,10 @@ fn files_that_come_along_follow_the_schema_of_their_kind() {
             ".finite_element.adaptive",
         ),
     ] {
-        let found = wrong(schema, &strip.replacen(from, to, 1));
+        let result = wrong(schema, &strip.replacen(from, to, 1));
         assert!(
-            found.iter().any(|fault| fault.starts_with(position)),
-            "{to}: {found:?}"
+            result.iter().any(|fault| fault.starts_with(position)),
+            "{to}: {result:?}"
         );
     }
 }
@@ -231,15 +231,15 @@ fn every_kind_of_new_file_is_accepted_as_it_is() {
                 "--study",
                 &file,
             ];
-            let told = words(
+            let message = words(
                 &gelbench(folder.path(), &options)
                     .code(2)
                     .get_output()
                     .stderr,
             );
             assert!(
-                told.contains("cannot read none.csv") && !told.contains("markers.toml"),
-                "{told}"
+                message.contains("cannot read none.csv") && !message.contains("markers.toml"),
+                "{message}"
             );
         }
     }
@@ -275,8 +275,11 @@ fn the_workbench_is_started_where_it_is_installed_and_else_it_is_said_how() {
         command.args(["workbench", "a.toml", "b.csv"]);
         command.env("PATH", folder.path()).assert()
     };
-    let told = words(&start().code(2).get_output().stderr);
-    assert!(told.contains("cargo install --path workbench"), "{told}");
+    let message = words(&start().code(2).get_output().stderr);
+    assert!(
+        message.contains("cargo install --path workbench"),
+        "{message}"
+    );
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;

@@ -88,10 +88,10 @@ fn a_strip_pressed_through_itself_inverts() {
         "{}",
         end.reached()
     );
-    let told = end.fault.to_string();
+    let output = end.fault.to_string();
     assert!(
-        told.starts_with("cell 0 near (2.5, -2.5) mm inverts"),
-        "{told}"
+        output.starts_with("cell 0 near (2.5, -2.5) mm inverts"),
+        "{output}"
     );
 }
 
@@ -128,8 +128,8 @@ fn an_unstable_material_is_named_with_its_cell_and_state() {
         };
         assert!(element.starts_with("cell 0 near (1.3, "), "{element}");
         // How near to the loss of stability the path comes is a matter of its steps.
-        let found: f64 = state.strip_prefix("I₁ = ").unwrap().parse().unwrap();
-        assert!((found - invariant).abs() < 0.011, "{state}");
+        let actual: f64 = state.strip_prefix("I₁ = ").unwrap().parse().unwrap();
+        assert!((actual - invariant).abs() < 0.011, "{state}");
     }
     assert!(strip(size, 4, law(0.3, 0.0), &right).is_ok());
 }
@@ -201,7 +201,7 @@ fn grips_and_rollers_that_cannot_be_are_refused() {
     let mesh = ring.mesh(4, CellShape::Quad4);
     let grip = Support::Grip([Drive::Force(1.0), Drive::Displacement(0.0)]);
     let clamp = Support::Displacement([Some(0.0); 2]);
-    for (supports, told) in [
+    for (supports, output) in [
         (vec![("inside", Support::Roller)], "not a straight line"),
         (vec![("start", clamp), ("inside", grip)], "another support"),
         (vec![("inside", grip), ("start", clamp)], "another support"),
@@ -216,8 +216,8 @@ fn grips_and_rollers_that_cannot_be_are_refused() {
             loads: Vec::new(),
         };
         let energy = problem.finite_elements(&mesh);
-        let found = problem.on(&mesh, &energy).err().expect("refused");
-        assert!(found.message.contains(told), "{}", found.message);
+        let actual = problem.on(&mesh, &energy).err().expect("refused");
+        assert!(actual.message.contains(output), "{}", actual.message);
     }
 }
 

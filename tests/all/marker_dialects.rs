@@ -40,10 +40,10 @@ fn every_program_in_every_dialect_gives_the_same_field() {
     for export in exports() {
         for dialect in dialects() {
             let text = dialect.text(&export, "made by hand");
-            let found = read_bytes(text.as_bytes(), &settings(export.unit));
-            assert_eq!(found.understood.layout, export.layout, "{text}");
+            let actual = read_bytes(text.as_bytes(), &settings(export.unit));
+            assert_eq!(actual.understood.layout, export.layout, "{text}");
             assert_eq!(
-                found.series, expected,
+                actual.series, expected,
                 "{}, {dialect:?}\n{text}",
                 export.layout
             );
@@ -79,9 +79,9 @@ fn every_program_in_every_encoding_gives_the_same_field() {
                 (utf_16(&plain, u16::to_le_bytes), "UTF-16LE"),
                 (utf_16(&plain, u16::to_be_bytes), "UTF-16BE"),
             ] {
-                let found = read_bytes(&bytes, &settings(export.unit));
-                assert_eq!(found.understood.encoding, Some(name));
-                assert_eq!(found.series, expected, "{}, {name}", export.layout);
+                let actual = read_bytes(&bytes, &settings(export.unit));
+                assert_eq!(actual.understood.encoding, Some(name));
+                assert_eq!(actual.series, expected, "{}, {name}", export.layout);
             }
         }
     }
@@ -110,15 +110,15 @@ fn named_columns_give_what_the_program_is_known_for() {
             .unwrap();
         for dialect in [dialects()[0], dialects()[70]] {
             let text = dialect.text(export, "");
-            let found = read_bytes(text.as_bytes(), &unnamed(names));
-            assert_eq!(found.understood.layout, "columns");
+            let actual = read_bytes(text.as_bytes(), &unnamed(names));
+            assert_eq!(actual.understood.layout, "columns");
             let positions = |series: &MarkerSeries| -> Vec<_> {
                 let markers = series.frames[0].markers.iter();
                 markers
                     .map(|marker| (marker.position, marker.displacement))
                     .collect()
             };
-            assert_eq!(positions(&found.series), positions(&expected), "{layout}");
+            assert_eq!(positions(&actual.series), positions(&expected), "{layout}");
         }
     }
     // Capitals tell columns apart; the file's y axis points up here.
@@ -146,11 +146,11 @@ fn a_field_read_downwards_is_the_mirrored_one() {
         downwards: Some(true),
         ..settings(None)
     };
-    let found = read_bytes(text(true).as_bytes(), &downwards);
-    assert_eq!(found.series, expected());
-    assert!(found.understood.turned_up && found.understood.sketch().is_some());
+    let actual = read_bytes(text(true).as_bytes(), &downwards);
+    assert_eq!(actual.series, expected());
+    assert!(actual.understood.turned_up && actual.understood.sketch().is_some());
     let upwards = read_bytes(text(false).as_bytes(), &settings(None));
-    assert_eq!(found.series, upwards.series);
+    assert_eq!(actual.series, upwards.series);
     assert!(!upwards.understood.turned_up);
     // What a layout says is overruled.
     let dice = exports().remove(1);
@@ -158,9 +158,9 @@ fn a_field_read_downwards_is_the_mirrored_one() {
         downwards: Some(false),
         ..settings(Some(0.5))
     };
-    let found = read_bytes(dialects()[0].text(&dice, "").as_bytes(), &up);
+    let actual = read_bytes(dialects()[0].text(&dice, "").as_bytes(), &up);
     let [first, wanted] =
-        [&found.series, &upwards.series].map(|series| series.frames[0].markers[0]);
+        [&actual.series, &upwards.series].map(|series| series.frames[0].markers[0]);
     assert_eq!(
         (first.position[1], first.displacement[1]),
         (-wanted.position[1], -wanted.displacement[1])
@@ -229,13 +229,13 @@ fn the_correction_is_the_same_to_the_bit_and_the_report_says_what_was_read() {
     );
     assert_eq!(of_aldic, nodes);
     assert!(printed.contains("\npyALDIC, y turned up; "), "{printed}");
-    for told in [
+    for message in [
         "read as pyALDIC",
         "Text in UTF-16BE",
         "y points down, as in an image",
         "| ux | disp_u | 0.5 | --unit |",
     ] {
-        assert!(report.contains(told), "{told}: {report}");
+        assert!(report.contains(message), "{message}: {report}");
     }
 }
 
@@ -268,14 +268,15 @@ fn forces_of_a_testing_machine_are_those_that_the_user_could_write() {
         measured(&["--forces", "machine.csv", "--study", "study.toml"]),
         written
     );
-    let told = |arguments: &[&str]| {
+    let message = |arguments: &[&str]| {
         let refused = correct(folder.path(), arguments).code(2);
         words(&refused.get_output().stderr)
     };
     assert!(
-        told(&["--forces", "machine.csv"]).contains("no column of this table is chosen as a force")
+        message(&["--forces", "machine.csv"])
+            .contains("no column of this table is chosen as a force")
     );
-    assert!(told(&["--study", "study.toml"]).contains("--forces FILE"));
+    assert!(message(&["--study", "study.toml"]).contains("--forces FILE"));
 }
 
 #[test]
@@ -283,7 +284,7 @@ fn wrong_names_are_told_with_those_that_there_are() {
     let folder = TempDir::new().unwrap();
     let text = "x_px,y_px,disp_u,disp_v,disp_v\n1,2,3,4,5\n";
     fs::write(folder.path().join("a.csv"), text).unwrap();
-    for (columns, told) in [
+    for (columns, message) in [
         (
             "x=x_px,y=y_px,ux=disp_x,uy=disp_v",
             "there is no column `disp_x` did you mean `disp_u`? the file has x_px, y_px, disp_u",
@@ -304,8 +305,8 @@ fn wrong_names_are_told_with_those_that_there_are() {
     ] {
         let arguments = ["--unit", "1 mm", "--columns", columns];
         let refused = correct(folder.path(), &arguments).code(2);
-        let found = words(&refused.get_output().stderr);
-        let plain: String = found
+        let actual = words(&refused.get_output().stderr);
+        let plain: String = actual
             .chars()
             .map(|letter| {
                 if "│×╰─▶·╭╯┬├".contains(letter) {
@@ -320,7 +321,7 @@ fn wrong_names_are_told_with_those_that_there_are() {
             .split_whitespace()
             .collect::<Vec<_>>()
             .join(" ");
-        for part in told.split(" did you").collect::<Vec<_>>() {
+        for part in message.split(" did you").collect::<Vec<_>>() {
             assert!(plain.contains(part.trim()), "{columns}: {plain}");
         }
     }

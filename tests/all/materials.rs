@@ -110,7 +110,7 @@ fn test_data_that_cannot_be_trusted_are_refused_with_line_and_remedy() {
         let all: Vec<&str> = arguments.iter().chain(options).copied().collect();
         words(&gelbench(folder.path(), &all).code(2).get_output().stderr)
     };
-    for (text, options, told) in [
+    for (text, options, message) in [
         (
             "stretch [-],nominal_stress [MPa]\n1.1,0.1\n",
             &[][..],
@@ -133,9 +133,9 @@ fn test_data_that_cannot_be_trusted_are_refused_with_line_and_remedy() {
         ),
         ("", &["--test", "uniaxial"], "there are no columns"),
     ] {
-        let found = fit(text, options);
-        let found = found.split_whitespace().collect::<Vec<_>>().join(" ");
-        assert!(found.contains(told), "{text:?}: {found}");
+        let actual = fit(text, options);
+        let actual = actual.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(actual.contains(message), "{text:?}: {actual}");
     }
     let mixed = "# test: uniaxial\nstretch [-];nominal_stress [MPa]\n1,1;0.1\n1,2;0.2\n";
     assert!(fit(mixed, &[]).contains("mixed"));
@@ -232,8 +232,8 @@ fn a_stated_parameter_is_held_and_stands_on_the_card() {
     assert!((angle["value"].as_f64().unwrap() - 3_f64.to_radians()).abs() < 1e-12);
     gelbench(folder.path(), &["materials", "refit", "a.toml"]).code(0);
     for (wrong, why) in [("angle=3 mm", "cannot be read"), ("kappa=1", "`kappa`")] {
-        let told = words(&fit(wrong).code(2).get_output().stderr);
-        assert!(told.contains(why), "{told}");
+        let message = words(&fit(wrong).code(2).get_output().stderr);
+        assert!(message.contains(why), "{message}");
     }
 }
 
@@ -302,7 +302,7 @@ fn groups_of_specimens_are_averaged_and_compared() {
         &["materials", "refit", "out/group-treated.toml"],
     )
     .code(0);
-    for (files, told) in [
+    for (files, message) in [
         (&["0.csv", "planar.csv"][..], "a test of another kind"),
         (
             &["0.csv", "1.csv", "--against", "2.csv"],
@@ -311,6 +311,6 @@ fn groups_of_specimens_are_averaged_and_compared() {
     ] {
         let run = group(files).code(2);
         let printed = crate::common::words(&run.get_output().stderr);
-        assert!(printed.contains(told), "{printed}");
+        assert!(printed.contains(message), "{printed}");
     }
 }

@@ -89,25 +89,25 @@ fn markers() -> String {
 
 #[test]
 fn the_example_is_what_the_program_makes_of_its_seed() {
-    let made = markers();
+    let built = markers();
     let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join("measured_plate.csv");
-    fs::write(path, &made).unwrap();
+    fs::write(path, &built).unwrap();
     let kept = fs::read_to_string(root().join("examples/measured_plate.csv")).unwrap();
-    for (made, kept) in made.lines().zip(kept.lines()) {
+    for (built, kept) in built.lines().zip(kept.lines()) {
         let numbers = |line: &str| -> Option<Vec<f64>> {
             line.split(',').map(|field| field.parse().ok()).collect()
         };
-        match (numbers(made), numbers(kept)) {
-            (Some(made), Some(kept)) => {
+        match (numbers(built), numbers(kept)) {
+            (Some(built), Some(kept)) => {
                 assert!(
-                    made.iter().zip(&kept).all(|(a, b)| (a - b).abs() < 2e-4),
+                    built.iter().zip(&kept).all(|(a, b)| (a - b).abs() < 2e-4),
                     "{kept:?}"
                 );
             }
-            _ => assert_eq!(made, kept),
+            _ => assert_eq!(built, kept),
         }
     }
-    assert_eq!(made.lines().count(), kept.lines().count());
+    assert_eq!(built.lines().count(), kept.lines().count());
 }
 
 const PLATE: [&str; 6] = [
@@ -154,8 +154,8 @@ fn a_homogeneous_field_keeps_its_stress_and_force() {
         ),
         "{printed}"
     );
-    let found = report(folder.path());
-    let frame = &found["steps"][0]["corrected"];
+    let actual = report(folder.path());
+    let frame = &actual["steps"][0]["corrected"];
     assert!(number(frame, &["left_mm"]) < 1e-3, "{frame:#}");
     // P = 2 C₁₀ (λ − 1/λ²) on the width of 20 mm and the thickness of 2 mm.
     let card = Card::load("neo-hooke", root()).unwrap();
@@ -358,14 +358,14 @@ fn wrong_input_ends_in_one_clear_message_and_nothing_is_written() {
         arguments.extend_from_slice(given);
         arguments.extend_from_slice(&PLATE[2..]);
         let done = gelbench(folder.path(), &arguments).code(2);
-        let told = words(&done.get_output().stderr);
-        let told = told
+        let message = words(&done.get_output().stderr);
+        let message = message
             .split_whitespace()
             .collect::<Vec<_>>()
             .join(" ")
             .replace("│ ", "");
-        assert!(told.contains(reason), "{given:?}: {told}");
-        assert!(told.contains(remedy), "{given:?}: {told}");
+        assert!(message.contains(reason), "{given:?}: {message}");
+        assert!(message.contains(remedy), "{given:?}: {message}");
         assert!(!folder.path().join("output/correct").exists(), "{given:?}");
     }
 }
@@ -427,12 +427,12 @@ fn a_coarse_field_is_brought_onto_a_finer_mesh() {
     let after = displacement_percent(&finer, &corrected, &truth);
     assert!(before > 0.1 && after < 0.1 * before, "{before} % {after} %");
     // A computed field has neither noise nor a scale.
-    let told = [&arguments[..], &["--scale-error", "0.1 %"]].concat();
-    let done = gelbench(folder.path(), &told).code(0);
-    let told = words(&done.get_output().stderr);
+    let message = [&arguments[..], &["--scale-error", "0.1 %"]].concat();
+    let done = gelbench(folder.path(), &message).code(0);
+    let message = words(&done.get_output().stderr);
     assert!(
-        told.contains("without noise; ignored: scale_error"),
-        "{told}"
+        message.contains("without noise; ignored: scale_error"),
+        "{message}"
     );
 }
 
@@ -442,9 +442,9 @@ fn a_field_in_metres_labelled_mm_is_told() {
     fs::write(folder.path().join("plate.csv"), uniaxial(0.001)).unwrap();
     let arguments = [&PLATE[..], &["--free", "top,bottom"]].concat();
     let done = gelbench(folder.path(), &arguments).code(1);
-    let told = words(&done.get_output().stdout);
+    let message = words(&done.get_output().stdout);
     assert!(
-        told.contains("assumes a thin sheet") && told.contains("--unit"),
-        "{told}"
+        message.contains("assumes a thin sheet") && message.contains("--unit"),
+        "{message}"
     );
 }

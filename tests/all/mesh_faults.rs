@@ -142,9 +142,9 @@ fn faulty() -> Vec<(&'static str, MeshFile, [&'static str; 2])> {
 #[test]
 fn check_names_every_fault_with_place_and_remedy() {
     for (name, file, expected) in faulty() {
-        let found = told(&file, "", &CHECK, 2);
+        let actual = told(&file, "", &CHECK, 2);
         for expected in expected {
-            assert!(found.contains(expected), "{name}: {found}");
+            assert!(actual.contains(expected), "{name}: {actual}");
         }
     }
     told(&MeshFile::squares([4, 2]), "", &CHECK, 0);
@@ -185,10 +185,10 @@ fn no_command_computes_on_a_faulty_mesh() {
         );
         fs::write(folder.path().join("strip.csv"), markers).unwrap();
         let done = gelbench(folder.path(), arguments).code(2);
-        let found = words(&done.get_output().stderr);
+        let actual = words(&done.get_output().stderr);
         assert!(
-            found.contains("2 sides lie on another cell's"),
-            "{arguments:?}: {found}"
+            actual.contains("2 sides lie on another cell's"),
+            "{arguments:?}: {actual}"
         );
     }
 }
@@ -218,24 +218,24 @@ fn an_empty_file_name_is_an_error_and_a_polygon_a_warning() {
         radius: 0.6,
     };
     let file = MeshFile::of(&hole.mesh(4, CellShape::Quad4));
-    let found = told(&file, "", &CHECK, 0);
+    let actual = told(&file, "", &CHECK, 0);
     assert!(
-        found.contains("the boundary `hole` is a polygon"),
-        "{found}"
+        actual.contains("the boundary `hole` is a polygon"),
+        "{actual}"
     );
     let meant = told(&file, "allowed = [\"polygons\"]", &CHECK, 0);
     assert_eq!(meant, "");
-    let found = told(
+    let actual = told(
         &MeshFile::of(&hole.mesh(4, CellShape::Quad8)),
         "",
         &CHECK,
         0,
     );
-    assert!(!found.contains("polygon"), "{found}");
+    assert!(!actual.contains("polygon"), "{actual}");
 }
 
 /// The force in N on the group `right`, which moves by a vector against the group `left`.
-fn force(mesh: &Mesh, way: [f64; 2]) -> [f64; 2] {
+fn force(mesh: &Mesh, direction: [f64; 2]) -> [f64; 2] {
     let support = |group: &str, [x, y]: [f64; 2]| {
         (group.to_owned(), Support::Displacement([Some(x), Some(y)]))
     };
@@ -243,7 +243,7 @@ fn force(mesh: &Mesh, way: [f64; 2]) -> [f64; 2] {
         thickness: 1.0,
         law: Arc::new(NeoHooke { c10: 0.05 }),
         regions: Vec::new(),
-        supports: vec![support("held", [0.0; 2]), support("moved", way)],
+        supports: vec![support("held", [0.0; 2]), support("moved", direction)],
         loads: Vec::new(),
     };
     let energy = problem.finite_elements(mesh);
@@ -301,11 +301,11 @@ fn the_same_mesh_in_other_numbers_places_and_units_has_the_same_force() {
             // Names that a turned mesh's own sides do not have.
             *name = name.replace("left", "held").replace("right", "moved");
         }
-        let way = [0.6, 0.2];
-        let expected = force(&read("a.msh", &file.msh(), 1.0), way);
+        let direction = [0.6, 0.2];
+        let expected = force(&read("a.msh", &file.msh(), 1.0), direction);
         let size = expected[0].hypot(expected[1]);
-        let same = |what: &str, found: [f64; 2], expected: [f64; 2]| {
-            let error = (found[0] - expected[0]).hypot(found[1] - expected[1]) / size;
+        let same = |what: &str, actual: [f64; 2], expected: [f64; 2]| {
+            let error = (actual[0] - expected[0]).hypot(actual[1] - expected[1]) / size;
             assert!(error < 1e-9, "{kind:?}, {what}: {error}");
         };
         let moved = |map: &dyn Fn([f64; 2]) -> [f64; 2]| MeshFile {
@@ -314,36 +314,39 @@ fn the_same_mesh_in_other_numbers_places_and_units_has_the_same_force() {
         };
         same(
             "numbers",
-            force(&read("a.msh", &shuffled(&file).msh(), 1.0), way),
+            force(&read("a.msh", &shuffled(&file).msh(), 1.0), direction),
             expected,
         );
         let far = moved(&|[x, y]| [x + 100.0, y - 30.0]);
         same(
             "translated",
-            force(&read("a.msh", &far.msh(), 1.0), way),
+            force(&read("a.msh", &far.msh(), 1.0), direction),
             expected,
         );
         let (sine, cosine) = 0.7_f64.sin_cos();
         let turn = |[x, y]: [f64; 2]| [cosine * x - sine * y, sine * x + cosine * y];
         same(
             "turned",
-            force(&read("a.msh", &moved(&turn).msh(), 1.0), turn(way)),
+            force(&read("a.msh", &moved(&turn).msh(), 1.0), turn(direction)),
             turn(expected),
         );
         // The cells of the mirrored mesh go around clockwise.
         let mirror = |[x, y]: [f64; 2]| [-x, y];
-        let mirrored = force(&read("a.msh", &moved(&mirror).msh(), 1.0), mirror(way));
+        let mirrored = force(
+            &read("a.msh", &moved(&mirror).msh(), 1.0),
+            mirror(direction),
+        );
         same("mirrored", mirrored, mirror(expected));
         let metres = moved(&|position| position.map(|x| 1e-3 * x));
         same(
             "in metres",
-            force(&read("a.msh", &metres.msh(), 1e3), way),
+            force(&read("a.msh", &metres.msh(), 1e3), direction),
             expected,
         );
         let mut other = read("a.vtu", &file.vtu(), 1.0);
         other.name_boundary("held", |[x, _]| x.abs() < 1e-9);
         other.name_boundary("moved", |[x, _]| (x - 6.0).abs() < 1e-9);
-        same("as .vtu", force(&other, way), expected);
+        same("as .vtu", force(&other, direction), expected);
     }
 }
 

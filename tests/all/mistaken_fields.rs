@@ -48,14 +48,14 @@ fn first_doubt(printed: &str) -> &str {
 fn mistakes_in_a_file_are_named_first_and_once() {
     let text = second_frame(|_| true);
     for (name, change) in MISTAKES {
-        let (printed, found) = corrected(&changed(&text, change), &[], NOT_EXPLAINED);
+        let (printed, actual) = corrected(&changed(&text, change), &[], NOT_EXPLAINED);
         assert!(first_doubt(&printed).contains(name), "{name}: {printed}");
         assert_eq!(
             printed.matches("the field seems to be").count(),
             1,
             "{printed}"
         );
-        let doubts = found["doubts"].as_array().unwrap();
+        let doubts = actual["doubts"].as_array().unwrap();
         assert!(doubts[0].as_str().unwrap().contains(name), "{doubts:?}");
     }
     let (printed, _) = corrected(&text, &[], 0);
@@ -71,9 +71,9 @@ fn a_reversed_sign_is_named_where_no_equilibrium_is_near() {
     let arguments = "correct plate.csv --material pva-10 --robust tukey --rigid left,right --free top,bottom --thickness";
     let arguments: Vec<&str> = arguments.split(' ').chain(["2 mm"]).collect();
     let done = gelbench(folder.path(), &arguments).code(2);
-    let told = one_line(&done.get_output().stderr);
+    let message = one_line(&done.get_output().stderr);
     let expected = "the field has no solution, but seems to be displacements with reversed sign";
-    assert!(told.contains(expected), "{told}");
+    assert!(message.contains(expected), "{message}");
 }
 
 /// Where nothing is said of the edges, any field is explained by edges of unknown motion.

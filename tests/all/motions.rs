@@ -71,7 +71,7 @@ fn the_longitudinal_frequency_of_a_slender_plate_is_none_of_bending() {
         let row = report
             .lines()
             .find(|line| line.starts_with(&format!("| {model} | ")));
-        let found: f64 = row
+        let actual: f64 = row
             .unwrap()
             .split('|')
             .nth(6)
@@ -79,7 +79,7 @@ fn the_longitudinal_frequency_of_a_slender_plate_is_none_of_bending() {
             .trim()
             .parse()
             .unwrap();
-        assert!((found / 144.3 - 1.0).abs() < 0.02, "{model}: {found}");
+        assert!((actual / 144.3 - 1.0).abs() < 0.02, "{model}: {actual}");
     }
 }
 
@@ -92,7 +92,7 @@ fn every_fault_of_a_motion_is_told_with_its_remedy() {
         [mass_spring.damping]\nkind = \"table\"\nat = [0.0]\nvalues = [\"1 Pa·s\"]\n";
     let folder = folder_with(&motion(rest));
     let done = gelbench(folder.path(), &["check", "small.toml"]).code(2);
-    let told = words(&done.get_output().stderr);
+    let message = words(&done.get_output().stderr);
     for fault in [
         "measures length",
         "must ascend",
@@ -101,7 +101,7 @@ fn every_fault_of_a_motion_is_told_with_its_remedy() {
         "must be a point of the sheet",
         "two points",
     ] {
-        assert!(told.contains(fault), "{fault}: {told}");
+        assert!(message.contains(fault), "{fault}: {message}");
     }
     assert!(!folder.path().join("output").exists());
 }
@@ -112,7 +112,7 @@ fn a_motion_that_does_not_say_its_physics_is_refused() {
     let folder =
         folder_with("kind = \"motion\"\ntitle = \"nothing\"\n[grip]\nmotion = \"release\"\n");
     let done = gelbench(folder.path(), &["check", "small.toml"]).code(2);
-    let told = words(&done.get_output().stderr);
+    let message = words(&done.get_output().stderr);
     for key in [
         "material.card: is missing",
         "material.density: is missing",
@@ -123,9 +123,9 @@ fn a_motion_that_does_not_say_its_physics_is_refused() {
         "grip.time: is missing",
         "time.duration: is missing",
     ] {
-        assert!(told.contains(key), "{key}: {told}");
+        assert!(message.contains(key), "{key}: {message}");
     }
-    assert!(told.contains("card = \"pva-10\""), "{told}");
+    assert!(message.contains("card = \"pva-10\""), "{message}");
 }
 
 #[test]
@@ -134,14 +134,14 @@ fn the_report_of_a_motion_says_plate_material_and_grips() {
     gelbench(folder.path(), &["run", "small.toml", "--output", "out"]).code(0);
     let read = |name: &str| fs::read_to_string(folder.path().join("out").join(name)).unwrap();
     let (report, json) = (read("report.md"), read("report.json"));
-    for said in [
+    for printed in [
         "a plate of 30 × 10 mm, 1 mm thick at rest",
         "held at 10 % stretch; the supports of `right` let go at 0 s",
         "1020.0 kg/m³",
         "marlow-exponential",
         "0.0611 MPa",
     ] {
-        assert!(report.contains(said), "{said}: {report}");
+        assert!(report.contains(printed), "{printed}: {report}");
     }
     let json: serde_json::Value = serde_json::from_str(&json).unwrap();
     let material = &json["material"];
@@ -176,15 +176,18 @@ fn a_motion_that_ends_before_its_time_keeps_its_instants() {
         [time]\nduration = \"20 ms\"\ninterval = \"0.5 ms\"\n";
     let folder = folder_with(&motion(rest));
     let run = gelbench(folder.path(), &["run", "small.toml", "--output", "out"]).code(3);
-    let told = words(&run.get_output().stdout);
+    let message = words(&run.get_output().stdout);
     assert!(
-        told.contains("FAIL mass-spring (6 × 2 cells) at time 0.007 s"),
-        "{told}"
+        message.contains("FAIL mass-spring (6 × 2 cells) at time 0.007 s"),
+        "{message}"
     );
-    assert!(told.contains("end the path or motion before it"), "{told}");
     assert!(
-        told.contains("corrected: displacement up to 0.0070000 s"),
-        "{told}"
+        message.contains("end the path or motion before it"),
+        "{message}"
+    );
+    assert!(
+        message.contains("corrected: displacement up to 0.0070000 s"),
+        "{message}"
     );
     let instants = |model: &str| {
         let table = folder.path().join(format!("out/motion_{model}.csv"));
@@ -202,23 +205,23 @@ fn steps_that_do_not_follow_a_swing_are_refused_and_what_does_nothing_is_told() 
     let swing = "[grip]\nmotion = \"sine\"\namplitude = \"2 %\"\nfrequency = \"100 Hz\"\n";
     let time = "[time]\nduration = \"0.1 s\"\ninterval = \"10 ms\"\nintegrator = \"generalised-alpha\"\nstep = \"10 ms\"\n";
     let start = "[start]\nstretch = \"0 %\"\n";
-    let told = |rest: &str| {
+    let message = |rest: &str| {
         let folder = folder_with(&motion(rest));
         let done = gelbench(folder.path(), &["check", "small.toml"]);
         words(&done.get_output().stderr)
     };
-    let refused = told(&format!("{start}{swing}{time}"));
+    let refused = message(&format!("{start}{swing}{time}"));
     assert!(
         refused.contains("time.step") && refused.contains("times the grip's period"),
         "{refused}"
     );
-    let fine = told(&format!(
+    let fine = message(&format!(
         "{start}{swing}{}",
         time.replace("10 ms", "0.4 ms")
     ));
     assert!(!fine.contains("the grip's period"), "{fine}");
     let late = "[grip]\nmotion = \"ramp\"\nbegin = \"5 s\"\nend = \"6 s\"\nto = \"10 %\"\n";
-    let idle = told(&format!("{start}{late}{TIME}"));
+    let idle = message(&format!("{start}{late}{TIME}"));
     assert!(
         idle.contains("does not begin within the computed time"),
         "{idle}"
@@ -293,20 +296,20 @@ fn a_driven_plate_has_the_corrected_force_of_its_grip_and_may_go_without() {
                   [time]\nduration = \"120 ms\"\ninterval = \"1 ms\"\n[tolerances]\ndeviation = \"16 %\"\n";
     let files = |rest: &str, code: i32| {
         let folder = folder_with(&motion(&format!("{driven}{rest}")));
-        let told = gelbench(folder.path(), &["run", "small.toml", "--output", "out"]).code(code);
+        let message = gelbench(folder.path(), &["run", "small.toml", "--output", "out"]).code(code);
         let file = |name: &str| fs::read_to_string(folder.path().join("out").join(name)).ok();
         (
             file("motion_corrected.csv"),
             file("motion_finite_element.csv").unwrap(),
             file("report.md").unwrap(),
-            words(&told.get_output().stdout),
+            words(&message.get_output().stdout),
         )
     };
     let (corrected, elements, report, _) = files("force = \"20 %\"\n", 0);
     let [corrected, elements] =
         [corrected.unwrap(), elements].map(|table| columns(&table, "grip force x"));
-    let found = distance_percent(&corrected, &elements);
-    assert!(found < 10.0, "{found} %");
+    let actual = distance_percent(&corrected, &elements);
+    assert!(actual < 10.0, "{actual} %");
     assert!(
         report.contains("corrected: force of the right grip"),
         "{report}"
@@ -314,6 +317,6 @@ fn a_driven_plate_has_the_corrected_force_of_its_grip_and_may_go_without() {
     let (corrected, _, report, _) = files("[corrector]\nenabled = false\n", 0);
     assert!(corrected.is_none());
     assert!(report.contains("The study disables the correction of the motion"));
-    let (_, _, _, told) = files("force = \"0.001 %\"\n", 1);
-    assert!(told.contains("force of the right grip"), "{told}");
+    let (_, _, _, message) = files("force = \"0.001 %\"\n", 1);
+    assert!(message.contains("force of the right grip"), "{message}");
 }

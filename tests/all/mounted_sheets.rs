@@ -29,9 +29,9 @@ fn a_law_is_found_again_from_forces_on_rakes_by_another_solver() {
             .with_values(&parameters, StressMeasure::Nominal, StrainMeasure::Nominal)
             .0;
         for strains in [[0.05, 0.05], [0.1, 0.05], [0.05, 0.1]] {
-            let [found, right] = [&*fit.fitted, &*known].map(|law| law.biaxial(strains));
+            let [actual, right] = [&*fit.fitted, &*known].map(|law| law.biaxial(strains));
             for axis in [0, 1] {
-                let off = found[axis] / right[axis] - 1.0;
+                let off = actual[axis] / right[axis] - 1.0;
                 assert!(off.abs() < 0.02, "{number} {strains:?} {off}");
             }
         }
@@ -75,14 +75,14 @@ fn mistakes_in_a_mounting_are_named_with_a_remedy() {
             "well within the sheet",
         ),
     ];
-    for (from, to, told) in cases {
+    for (from, to, message) in cases {
         std::fs::write(folder.path().join("a.csv"), text.replacen(from, to, 1)).unwrap();
         let run = gelbench(
             folder.path(),
             &["materials", "fit", "a.csv", "--law", "neo-hooke"],
         );
         let printed = words(&run.code(2).get_output().stderr);
-        assert!(printed.contains(told), "{from} → {to}: {printed}");
+        assert!(printed.contains(message), "{from} → {to}: {printed}");
     }
 }
 

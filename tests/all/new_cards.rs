@@ -128,8 +128,8 @@ fn what_is_wrong_is_told_with_a_remedy() {
         ),
     ] {
         let line = [&["--law", "neo-hooke"], line].concat();
-        let found = new(&folder, &line, 2);
-        assert!(found.contains(expected), "{line:?}: {found}");
+        let actual = new(&folder, &line, 2);
+        assert!(actual.contains(expected), "{line:?}: {actual}");
     }
     assert!(fs::read_dir(folder.path()).unwrap().next().is_none());
 }

@@ -99,8 +99,8 @@ fn a_model_that_a_study_leaves_out_is_not_computed() {
         let alone = computed(&format!("models = [\"finite-element\"]\n{text}"));
         let models = &alone.outcome.steps[1].models;
         assert!(models["mass_spring"].is_null() && models["corrected"].is_null());
-        let whole = force(&computed(text), 1, "finite_element");
-        assert_eq!(force(&alone, 1, "finite_element"), whole);
+        let complete = force(&computed(text), 1, "finite_element");
+        assert_eq!(force(&alone, 1, "finite_element"), complete);
         assert!(alone.passed() && alone.outcome.checks.is_empty());
         assert!(!alone.outcome.headline.is_empty());
         let others = computed(&format!(
@@ -182,8 +182,8 @@ fn a_support_that_leaves_the_line_of_another_one_is_a_fault() {
         [path]\nfactors = [1.0]\nmeasured_group = \"outside\"\n";
     let folder = folder_with(text);
     let done = gelbench(folder.path(), &["check", "small.toml"]).code(2);
-    let told = String::from_utf8_lossy(&done.get_output().stderr).into_owned();
-    assert!(told.contains("slides along a line"), "{told}");
+    let messages = String::from_utf8_lossy(&done.get_output().stderr).into_owned();
+    assert!(messages.contains("slides along a line"), "{messages}");
 }
 
 /// The rows of a table of a study as numbers behind the names of model and place.
@@ -240,7 +240,7 @@ fn what_is_measured_within_a_sheet_in_uniaxial_tension_is_exact_in_every_model_t
         close("stretch_2", stretch.powf(-0.5));
         close("displacement_x_mm", 7.0 * (stretch - 1.0));
         close("cauchy_xy_MPa", 0.0);
-        assert!((of(&lengths, clip, "stretch") - stretch).abs() < 1e-9);
+        assert!((of(&lengths, clip, "extensometer_stretch") - stretch).abs() < 1e-9);
         // σ A, with A = A₀ / λ of 10 × 2 mm².
         let force = 20.0 / stretch * of(&head, row, "cauchy_xx_MPa");
         assert!((of(&lengths, clip, "force_x_N") / force - 1.0).abs() < 1e-8);
@@ -341,12 +341,12 @@ fn a_measured_curve_is_drawn_over_that_of_the_models() {
         };
         let lines = &charts[0].0.lines;
         assert_eq!((lines.len(), &*lines[0].label), (4, "measured"));
-        // The third row has 2 N or 20 N, and 2 mm, 2 cm, a stretch of 2, or 2 %.
+        // The third row has 2 N or 20 N, and 2 mm, 2 cm, a stretch of 200 % from rest, or 2 %.
         let [moved, force] = lines[0].points[2];
         let expected = [
             ("Standardweg", 2.0),
             ("cm", 20.0),
-            ("stretch", 100.0),
+            ("stretch", 200.0),
             ("strain", 2.0),
         ];
         let expected = expected

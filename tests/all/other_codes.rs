@@ -71,7 +71,7 @@ fn every_code_gets_a_file_of_every_kind_of_study() {
 #[test]
 fn what_cannot_be_exported_is_refused_before_anything_is_written() {
     let gripped = format!("{HOLE}{GRIPPED}");
-    for (study, arguments, told) in [
+    for (study, arguments, message) in [
         (&*gripped, vec!["--to", "febio"], "export to Abaqus"),
         (SMALL, vec!["--to", "calculix"], "fit such a card"),
         (
@@ -93,8 +93,8 @@ fn what_cannot_be_exported_is_refused_before_anything_is_written() {
         let folder = folder_with(study);
         let export = [vec!["export", "small.toml"], arguments].concat();
         let done = gelbench(folder.path(), &export).code(2);
-        let found = one_line(&done.get_output().stderr);
-        assert!(found.contains(told), "{told}: {found}");
+        let actual = one_line(&done.get_output().stderr);
+        assert!(actual.contains(message), "{message}: {actual}");
         assert!(!folder.path().join("output").exists());
     }
 }
@@ -157,8 +157,8 @@ fn a_comparison_says_what_a_run_says_and_which_part_is_a_motion_of_the_whole_bod
     let run = json(&["run", "small.toml", "--output", "out", "--json"], 0);
     let field = "out/vtk/finite_element_001.vtu";
     let compared = json(&["compare", "small.toml", field, "--json"], 0);
-    let of = |found: &serde_json::Value, model: usize| {
-        number(&found["models"][model], &["displacement_percent"])
+    let of = |actual: &serde_json::Value, model: usize| {
+        number(&actual["models"][model], &["displacement_percent"])
     };
     assert!(of(&compared, 0) < 1e-6);
     assert!(number(&compared, &["finite_elements_own_error_percent"]) > 0.0);
@@ -175,14 +175,14 @@ fn a_comparison_says_what_a_run_says_and_which_part_is_a_motion_of_the_whole_bod
     );
     fs::write(position.join("moved.csv"), table).unwrap();
     let compared = json(&["compare", "small.toml", "moved.csv", "--json"], 1);
-    let told = compared["doubts"][0].as_str().unwrap();
+    let message = compared["doubts"][0].as_str().unwrap();
     assert!(
-        told.contains(
+        message.contains(
             "by (-1.5000, 0.7000) mm and -0.0000 degrees: without it the difference is 0.0000"
-        ) || told.contains(
+        ) || message.contains(
             "by (-1.5000, 0.7000) mm and 0.0000 degrees: without it the difference is 0.0000"
         ),
-        "{told}"
+        "{message}"
     );
 }
 

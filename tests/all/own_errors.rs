@@ -138,11 +138,11 @@ fn what_local_refinement_states_as_its_error_of_the_displacement_holds_the_diffe
     let [truth, least] = ring("T2", "0.2 %");
     assert!(least < 0.02, "{least}");
     for error in ["10 %", "5 %", "4 %"] {
-        let [found, own] = ring("T1", error);
-        let apart = (found - truth).abs();
+        let [actual, own] = ring("T1", error);
+        let apart = (actual - truth).abs();
         assert!(
             apart < own + least,
-            "{error}: {found} {own} {truth} {least}"
+            "{error}: {actual} {own} {truth} {least}"
         );
         assert!(own < 2.0, "{error}: {own}");
     }
@@ -177,9 +177,9 @@ fn shapes_with_holes_and_notches_state_no_less_than_half_of_their_error() {
     ] {
         let truth = number(&elements(&study(shape, 32, "Q2")), &["measured_N"]);
         for (cells, element) in cases {
-            let found = elements(&study(shape, cells, element));
-            let wrong = 100.0 * (number(&found, &["measured_N"]) / truth - 1.0).abs();
-            let stated = number(&found, &["measured_discretisation_percent"]);
+            let actual = elements(&study(shape, cells, element));
+            let wrong = 100.0 * (number(&actual, &["measured_N"]) / truth - 1.0).abs();
+            let stated = number(&actual, &["measured_discretisation_percent"]);
             assert!(stated > 0.5 * wrong, "{shape} {element}: {stated} {wrong}");
         }
     }

@@ -173,9 +173,9 @@ fn the_file_of_conditions_states_the_plane_too_and_cards_must_have_it() {
         "plane-strain",
     ];
     let done = gelbench(folder.path(), &arguments).code(2);
-    let told = one_line(&done.get_output().stderr);
+    let message = one_line(&done.get_output().stderr);
     assert!(
-        told.contains("is incompressible") && told.contains("poisson_ratio"),
-        "{told}"
+        message.contains("is incompressible") && message.contains("poisson_ratio"),
+        "{message}"
     );
 }

@@ -73,13 +73,13 @@ fn the_models_of_two_strips_in_parallel_carry_the_sum_of_their_forces() {
     // Springs alone are stiffer in a sheet that is free to contract.
     assert!((1.0..1.3).contains(&(force("mass_spring") / exact)));
     let regions = report["material"]["regions"].as_array().unwrap();
-    let told: Vec<_> = regions
+    let output: Vec<_> = regions
         .iter()
         .map(|own| (&own["number"], &own["name"], &own["material"]["card"]))
         .map(|(number, name, card)| format!("{number} {name} {card}"))
         .collect();
     assert_eq!(
-        told,
+        output,
         ["1 \"lower\" \"neo-hooke\"", "2 \"upper\" \"meunier-yeoh\""]
     );
     let page = fs::read_to_string(folder.path().join("out/report.md")).unwrap();
@@ -203,14 +203,14 @@ fn faults_of_regions_are_told_with_their_remedies() {
             vec!["material.on", "write [[material]] for each region"],
         ),
     ] {
-        let told = refused(&materials, others);
-        let told = told
+        let output = refused(&materials, others);
+        let output = output
             .split_whitespace()
             .collect::<Vec<_>>()
             .join(" ")
             .replace("│ ", "");
         for expected in expected {
-            assert!(told.contains(expected), "{expected}: {told}");
+            assert!(output.contains(expected), "{expected}: {output}");
         }
     }
 }
@@ -223,10 +223,10 @@ fn built_in_shapes_have_no_regions_and_a_sheet_has_one_plane_state() {
     );
     let folder = folder_with(&shape);
     let done = gelbench(folder.path(), &["check", "small.toml"]).code(2);
-    let told = words(&done.get_output().stderr);
+    let output = words(&done.get_output().stderr);
     assert!(
-        told.contains("the cells of a built-in shape have no names"),
-        "{told}"
+        output.contains("the cells of a built-in shape have no names"),
+        "{output}"
     );
     let soft =
         "law = \"neo-hooke\"\n[parameters]\nc10 = \"0.05 MPa\"\n[volume]\npoisson_ratio = 0.4\n";
@@ -241,10 +241,10 @@ fn built_in_shapes_have_no_regions_and_a_sheet_has_one_plane_state() {
     );
     fs::write(folder.path().join("soft.toml"), soft).unwrap();
     let done = gelbench(folder.path(), &["check", "small.toml"]).code(2);
-    let told = words(&done.get_output().stderr);
+    let output = words(&done.get_output().stderr);
     assert!(
-        told.contains("write the same `sheet` for all cards"),
-        "{told}"
+        output.contains("write the same `sheet` for all cards"),
+        "{output}"
     );
 }
 
@@ -277,10 +277,10 @@ fn an_inclusion_has_the_force_and_the_displacement_of_another_code() {
         (1, 0.647650280434278, 3.04674903838223),
         (3, 1.15789953108755, 11.2499789897858),
     ] {
-        let [found, _] = model.reaction(&states[step], "right");
-        assert!((found / force - 1.0).abs() < 1e-9, "{found}");
-        let found = states[step].convergence.energy;
-        assert!((found / energy - 1.0).abs() < 1e-9, "{found}");
+        let [actual, _] = model.reaction(&states[step], "right");
+        assert!((actual / force - 1.0).abs() < 1e-9, "{actual}");
+        let actual = states[step].convergence.energy;
+        assert!((actual / energy - 1.0).abs() < 1e-9, "{actual}");
     }
     let sheet = problem.deformed(&mesh, &states[3]);
     for (position, expected) in [
@@ -288,11 +288,11 @@ fn an_inclusion_has_the_force_and_the_displacement_of_another_code() {
         ([26.0, 19.0], [7.65191336517936, -0.0484161161714678]),
         ([30.0, 30.0], [8.9452353159507, -1.56208163960977]),
     ] {
-        let found = sheet.displacement_at(position).unwrap();
+        let actual = sheet.displacement_at(position).unwrap();
         for axis in [0, 1] {
             assert!(
-                (found[axis] - expected[axis]).abs() < 1e-8,
-                "{position:?}: {found:?}"
+                (actual[axis] - expected[axis]).abs() < 1e-8,
+                "{position:?}: {actual:?}"
             );
         }
     }

@@ -129,13 +129,13 @@ fn what_motions_compute_is_what_fits_read() {
         .map(|one| one.value)
         .chain([0.25, 0.3, 0.15, 4.0])
         .collect();
-    for (found, truth) in fit.parameters.iter().zip(truth) {
+    for (actual, truth) in fit.parameters.iter().zip(truth) {
         // The fit divides steps of the stretch that are longer than 1 %.
         assert!(
-            (found.value / truth - 1.0).abs() < 2e-3,
+            (actual.value / truth - 1.0).abs() < 2e-3,
             "{} {} {truth}",
-            found.key,
-            found.value
+            actual.key,
+            actual.value
         );
     }
     let worst = fit.predicted[0].iter().zip(&stresses);
@@ -184,9 +184,15 @@ fn a_record_becomes_a_card_that_motions_and_pictures_take() {
         ".",
     ];
     let done = gelbench(folder.path(), &arguments).code(0);
-    let told = words(&done.get_output().stdout);
-    assert!(told.contains("terms        1 of a Prony series"), "{told}");
-    assert!(told.contains("0.05000 to 20.00 s are resolved"), "{told}");
+    let output = words(&done.get_output().stdout);
+    assert!(
+        output.contains("terms        1 of a Prony series"),
+        "{output}"
+    );
+    assert!(
+        output.contains("0.05000 to 20.00 s are resolved"),
+        "{output}"
+    );
     gelbench(folder.path(), &["materials", "refit", "gel.toml"]).code(0);
     gelbench(
         folder.path(),
@@ -225,7 +231,7 @@ fn a_record_becomes_a_card_that_motions_and_pictures_take() {
     ] {
         let refused = ["materials", "fit", "hold.csv", "--law", "yeoh"];
         let refused: Vec<&str> = refused.into_iter().chain(arguments).collect();
-        let told = gelbench(folder.path(), &refused).code(2);
-        assert!(words(&told.get_output().stderr).contains(message));
+        let output = gelbench(folder.path(), &refused).code(2);
+        assert!(words(&output.get_output().stderr).contains(message));
     }
 }

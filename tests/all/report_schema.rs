@@ -16,8 +16,8 @@ fn schema() -> Value {
 /// The report in a folder, which follows the schema.
 fn report(folder: &TempDir, kind: &str, along: Option<&str>, steps: usize) -> Value {
     let report = machine_report(&folder.path().join("out"));
-    let found = faults(&schema(), &report, "report");
-    assert!(found.is_empty(), "{found:#?}");
+    let result = faults(&schema(), &report, "report");
+    assert!(result.is_empty(), "{result:#?}");
     assert_eq!(report["kind"], kind);
     assert_eq!(report["along"].as_str(), along);
     assert_eq!(report["steps"].as_array().unwrap().len(), steps);
@@ -182,7 +182,7 @@ fn with_json_standard_output_is_the_report_and_words_go_to_standard_error() {
             "written: f",
         ),
     ];
-    for (arguments, file, told) in samples {
+    for (arguments, file, message) in samples {
         let done = gelbench(folder.path(), arguments);
         let output = done.get_output();
         let printed: Value = serde_json::from_slice(&output.stdout)
@@ -196,7 +196,7 @@ fn with_json_standard_output_is_the_report_and_words_go_to_standard_error() {
             );
         }
         assert!(
-            words(&output.stderr).contains(told),
+            words(&output.stderr).contains(message),
             "{}",
             words(&output.stderr)
         );
@@ -206,14 +206,14 @@ fn with_json_standard_output_is_the_report_and_words_go_to_standard_error() {
 #[test]
 fn verbose_names_steps_and_files_and_quiet_names_neither() {
     let folder = folder_with(SMALL);
-    let told = |option: &str| {
+    let message = |option: &str| {
         let done = gelbench(
             folder.path(),
             &["run", "small.toml", "--output", "o", option],
         );
         words(&done.code(0).get_output().stderr)
     };
-    let verbose = told("--verbose");
+    let verbose = message("--verbose");
     for line in [
         "done: mass-spring, ",
         "done: corrector, ",
@@ -222,7 +222,7 @@ fn verbose_names_steps_and_files_and_quiet_names_neither() {
     ] {
         assert!(verbose.contains(line), "{line}: {verbose}");
     }
-    let quiet = told("--quiet");
+    let quiet = message("--quiet");
     assert!(!quiet.contains("gelbench: "), "{quiet}");
 }
 

@@ -110,12 +110,12 @@ fn millimetres_taken_for_metres_are_told_in_every_kind_of_study() {
         ]
     };
     for study in strips("m") {
-        let found = checked(&study, 0);
-        assert!(found.contains("times its thickness"), "{study}{found}");
+        let result = checked(&study, 0);
+        assert!(result.contains("times its thickness"), "{study}{result}");
     }
     for study in strips("mm") {
-        let found = checked(&study, 0);
-        assert!(!found.contains("thickness"), "{study}{found}");
+        let result = checked(&study, 0);
+        assert!(!result.contains("thickness"), "{study}{result}");
     }
 }
 
@@ -139,14 +139,14 @@ fn the_range_of_a_card_is_judged_alike_in_plates_specimens_and_motions() {
         ]
     };
     for study in kinds("100 %", "60 mm") {
-        let found = warnings(&study);
-        assert!(!found.contains("outside the range"), "{study}{found}");
+        let result = warnings(&study);
+        assert!(!result.contains("outside the range"), "{study}{result}");
     }
     for study in kinds("110 %", "66 mm") {
-        let found = warnings(&study);
+        let result = warnings(&study);
         assert!(
-            found.contains("outside the range of the card `pva-10`"),
-            "{study}{found}"
+            result.contains("outside the range of the card `pva-10`"),
+            "{study}{result}"
         );
     }
 }
@@ -162,12 +162,12 @@ fn thin_sheets_are_told_to_wrinkle_and_thick_ones_are_not_in_every_kind_of_study
         ]
     };
     for study in kinds("2 mm") {
-        let found = warnings(&study);
-        assert!(!found.contains("wrinkle"), "{study}{found}");
+        let result = warnings(&study);
+        assert!(!result.contains("wrinkle"), "{study}{result}");
     }
     for study in kinds("0.005 mm") {
-        let found = warnings(&study);
-        assert!(found.contains("may wrinkle or buckle"), "{study}{found}");
+        let result = warnings(&study);
+        assert!(result.contains("may wrinkle or buckle"), "{study}{result}");
     }
 }
 

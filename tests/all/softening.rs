@@ -16,7 +16,7 @@ fn fitted() -> TempDir {
     let fit = "materials fit cyclic_loading.csv --law neo-hooke --softening --name softening_gel --output .";
     let arguments: Vec<&str> = fit.split(' ').collect();
     let done = gelbench(folder.path(), &arguments).code(0);
-    let told = words(&done.get_output().stdout);
+    let message = words(&done.get_output().stdout);
     for part in [
         "softening.r",
         "softening.m",
@@ -24,7 +24,7 @@ fn fitted() -> TempDir {
         "cycle 4",
         "closed form",
     ] {
-        assert!(told.contains(part), "{told}");
+        assert!(message.contains(part), "{message}");
     }
     folder
 }
@@ -41,12 +41,12 @@ fn a_record_becomes_a_card_that_is_shown_drawn_and_fitted_again() {
         ("softening.beta", 0.12),
     ] {
         let all = figures["parameters"].as_array().unwrap();
-        let found = all.iter().find(|one| one["key"] == key).unwrap();
-        let ends = found["interval_95_percent"].as_array().unwrap();
+        let actual = all.iter().find(|one| one["key"] == key).unwrap();
+        let ends = actual["interval_95_percent"].as_array().unwrap();
         let [low, high] = [0, 1].map(|end| ends[end].as_f64().unwrap());
         // A 95 % interval of one record, doubled.
         let (middle, half) = (0.5 * (low + high), high - low);
-        assert!((truth - middle).abs() < half, "{found}");
+        assert!((truth - middle).abs() < half, "{actual}");
     }
     let cycles = figures["softening"]["cycles"].as_array().unwrap();
     assert_eq!(cycles.len(), 4);
@@ -94,10 +94,10 @@ fn a_strip_is_loaded_unloaded_and_loaded_again() {
     let study = fs::read_to_string(&file).unwrap();
     fs::write(&file, study.replace("cells = 8", "cells = 4")).unwrap();
     let done = gelbench(folder.path(), &["run", "softening_strip.toml"]).code(0);
-    let told = words(&done.get_output().stdout);
+    let message = words(&done.get_output().stdout);
     let report = machine_report(&folder.path().join("output/softening_strip"));
     let steps = report["steps"].as_array().unwrap();
-    assert_eq!(steps.len(), 9, "{told}");
+    assert_eq!(steps.len(), 9, "{message}");
     for model in ["mass_spring", "corrected", "finite_element"] {
         let of = |step: usize, key: &str| steps[step][model][key].as_f64().unwrap();
         let (force, lost) = (
@@ -139,11 +139,11 @@ fn what_has_no_memory_refuses_the_card() {
         example("softening_strip.toml") + "\n[finite_element]\nelement = \"T2\"\nadaptive = true\n";
     fs::write(folder.path().join("adaptive.toml"), adaptive).unwrap();
     for study in ["motion.toml", "adaptive.toml"] {
-        let told = gelbench(folder.path(), &["check", study]).code(2);
-        let told = words(&told.get_output().stderr);
+        let message = gelbench(folder.path(), &["check", study]).code(2);
+        let message = words(&message.get_output().stderr);
         assert!(
-            told.contains("softens") && told.contains("no memory"),
-            "{told}"
+            message.contains("softens") && message.contains("no memory"),
+            "{message}"
         );
     }
     let strip = example("softening_strip.toml")
@@ -174,7 +174,7 @@ fn what_has_no_memory_refuses_the_card() {
     );
     for (code, exit, part) in [("calculix", 2, "*MULLINS EFFECT"), ("febio", 2, "Abaqus")] {
         let done = gelbench(folder.path(), &["export", "strip.toml", "--to", code]).code(exit);
-        let told = words(&done.get_output().stderr);
-        assert!(told.contains(part), "{told}");
+        let message = words(&done.get_output().stderr);
+        assert!(message.contains(part), "{message}");
     }
 }

@@ -46,8 +46,8 @@ fn a_grip_with_a_force_moves_in_all_three_models() {
     let lame = rest.replace("y = \"0 mm\"\n", "");
     fs::write(folder.path().join("small.toml"), specimen(shape, &lame)).unwrap();
     let done = gelbench(folder.path(), &["check", "small.toml"]).code(2);
-    let found = words(&done.get_output().stderr);
-    assert!(found.contains("needs either y or y_force"), "{found}");
+    let result = words(&done.get_output().stderr);
+    assert!(result.contains("needs either y or y_force"), "{result}");
 }
 
 #[test]
@@ -98,13 +98,13 @@ fn specimens_of_every_shape_run_in_all_three_models() {
             panic!("{last}");
         };
         let own = &machine["steps"][1]["finite_element"]["groups"][group]["force_N"];
-        let found: Vec<f64> = numbers
+        let result: Vec<f64> = numbers
             .split(',')
             .map(|word| word.parse().unwrap())
             .collect();
-        for (axis, found) in found[..2].iter().enumerate() {
+        for (axis, result) in result[..2].iter().enumerate() {
             assert!(
-                (own[axis].as_f64().unwrap() - found).abs() < 1e-12,
+                (own[axis].as_f64().unwrap() - result).abs() < 1e-12,
                 "{last}"
             );
         }
@@ -175,14 +175,14 @@ fn a_load_that_is_given_is_not_compared_with_itself() {
         "{printed}"
     );
     let report = fs::read_to_string(folder.path().join("out/report.md")).unwrap();
-    for said in [
+    for output in [
         "the mean displacement along x of the group `right`",
         "a traction of (0.02, 0) MPa",
         "clamped: ux = uy = 0",
         "a strip of 20 × 10 mm, 2 mm thick",
         "| c10 |",
     ] {
-        assert!(report.contains(said), "{said}: {report}");
+        assert!(report.contains(output), "{output}: {report}");
     }
     let json = machine_report(&folder.path().join("out"));
     assert_eq!(json["problem"]["thickness_mm"], 2.0);
@@ -228,8 +228,8 @@ fn forces_of_all_supports_balance_on_every_shape_and_law() {
         let study = specimen(shape, rest).replace("pva-10-yeoh", card);
         let folder = folder_with(&study);
         let done = gelbench(folder.path(), &["run", "small.toml", "--output", "out"]);
-        let told = words(&done.get_output().stderr);
-        assert!(!told.contains("do not balance"), "{told}");
+        let message = words(&done.get_output().stderr);
+        assert!(!message.contains("do not balance"), "{message}");
         let json = machine_report(&folder.path().join("out"));
         for model in ["mass_spring", "corrected", "finite_element"] {
             let groups = &json["steps"][0][model]["groups"];

@@ -33,12 +33,12 @@ fn compare(arguments: &[&str], codes: &'static [i32]) -> usize {
     assert!(read(&folder.path().join("TIMES.md")).contains("time [s]"));
     let committed = read(&root.join("validation/REPORT.md"));
     let committed = lines(&committed);
-    let found = read(&folder.path().join("REPORT.md"));
-    let found = lines(&found);
-    for line in &found {
+    let result = read(&folder.path().join("REPORT.md"));
+    let result = lines(&result);
+    for line in &result {
         assert!(!line.contains("NaN"), "not a number in the report: {line}");
-        let said = committed.iter().any(|committed| agree(line, committed));
-        assert!(said, "the committed report does not say: {line}");
+        let printed = committed.iter().any(|committed| agree(line, committed));
+        assert!(printed, "the committed report does not say: {line}");
     }
     for entry in fs::read_dir(folder.path()).unwrap() {
         let name = entry.unwrap().file_name();
@@ -51,7 +51,7 @@ fn compare(arguments: &[&str], codes: &'static [i32]) -> usize {
             "{name:?} is not committed"
         );
     }
-    found.len()
+    result.len()
 }
 
 #[test]

@@ -62,8 +62,8 @@ fn measured(law: Arc<dyn HyperelasticLaw>) -> Vec<[f64; 3]> {
     let elements = FiniteElements::new(&plate, [24, 8], Element::Q2);
     let states = elements.solve(&plate, SETTINGS, &|_| ()).unwrap();
     let measures = states.iter().map(|state| {
-        let found = Measures::of(&elements.mesh, state);
-        [found.force, found.mid_width, found.energy]
+        let actual = Measures::of(&elements.mesh, state);
+        [actual.force, actual.mid_width, actual.energy]
     });
     measures.collect()
 }
@@ -85,15 +85,15 @@ fn a_clamped_plate_that_changes_its_volume_is_that_of_another_code() {
         let plane = PlaneState::NAMES
             .iter()
             .find(|(name, _)| *name == pair[0][2]);
-        let found = measured(sheet(
+        let actual = measured(sheet(
             pair[0][0],
             pair[0][1].parse().unwrap(),
             plane.unwrap().1,
         ));
-        for (row, found) in pair.iter().zip(found) {
-            for (found, expected) in found.iter().zip(&row[4..]) {
-                let off = (found / expected.parse::<f64>().unwrap() - 1.0).abs();
-                assert!(off < 1e-6, "{row:?}: {found}, {off:.1e}");
+        for (row, actual) in pair.iter().zip(actual) {
+            for (actual, expected) in actual.iter().zip(&row[4..]) {
+                let off = (actual / expected.parse::<f64>().unwrap() - 1.0).abs();
+                assert!(off < 1e-6, "{row:?}: {actual}, {off:.1e}");
             }
         }
     }
@@ -103,8 +103,8 @@ fn a_clamped_plate_that_changes_its_volume_is_that_of_another_code() {
 fn law_of_row(row: &[&str]) -> Arc<dyn HyperelasticLaw> {
     let law = samples::card(row[0], &row[1].replace("; ", "\n")).law;
     let choice = |names: &[(&'static str, VolumeEnergy)], name: &str| {
-        let found = names.iter().find(|(known, _)| *known == name);
-        found.map(|(_, choice)| *choice)
+        let actual = names.iter().find(|(known, _)| *known == name);
+        actual.map(|(_, choice)| *choice)
     };
     let law = match choice(&VolumeEnergy::NAMES, row[2]) {
         Some(energy) => {
@@ -128,16 +128,16 @@ fn a_clamped_plate_of_any_law_of_volume_change_is_that_of_two_other_codes() {
     let rows = rows(include_str!("../../validation/plate/volume_laws.csv"));
     let mut plates = BTreeMap::new();
     for row in &rows {
-        let found = plates
+        let actual = plates
             .entry(&row[..4])
             .or_insert_with(|| measured(law_of_row(row)));
-        let found = found[usize::from(row[5] == "0.5")];
-        for (found, expected) in found.iter().zip(&row[6..]) {
+        let actual = actual[usize::from(row[5] == "0.5")];
+        for (actual, expected) in actual.iter().zip(&row[6..]) {
             if expected.is_empty() {
                 continue;
             }
-            let off = (found / expected.parse::<f64>().unwrap() - 1.0).abs();
-            assert!(off < 1e-6, "{row:?}: {found}, {off:.1e}");
+            let off = (actual / expected.parse::<f64>().unwrap() - 1.0).abs();
+            assert!(off < 1e-6, "{row:?}: {actual}, {off:.1e}");
         }
     }
     assert_eq!((plates.len(), rows.len()), (21, 90));
@@ -149,8 +149,8 @@ fn the_limit_of_plane_stress_is_the_sheet_that_keeps_its_volume() {
     for name in ["neo-hooke", "mooney-rivlin", "yeoh"] {
         let exact = measured(law(name));
         let far = |poisson_ratio| {
-            let found = measured(sheet(name, poisson_ratio, PlaneState::Stress));
-            let pairs = found.iter().flatten().zip(exact.iter().flatten());
+            let actual = measured(sheet(name, poisson_ratio, PlaneState::Stress));
+            let pairs = actual.iter().flatten().zip(exact.iter().flatten());
             pairs.map(|(a, b)| (a / b - 1.0).abs()).fold(0.0, f64::max)
         };
         let (near, nearer) = (far(0.4995), far(0.49995));
@@ -230,15 +230,15 @@ fn laws_of_volume_change_run_in_studies() {
                 _ => nu,
             };
             let equal = (in_plane - 1.0 / 3.0).abs() < 1e-3;
-            let told = warnings.contains("ν = ⅓");
-            assert_eq!(told, !equal, "{law} {sheet}: {warnings}");
+            let message = warnings.contains("ν = ⅓");
+            assert_eq!(message, !equal, "{law} {sheet}: {warnings}");
         }
     }
 }
 
 #[test]
 fn what_cannot_change_its_volume_is_told() {
-    let told = |sheet: &str, volume: &str, replace: [&str; 2]| {
+    let message = |sheet: &str, volume: &str, replace: [&str; 2]| {
         let folder = TempDir::new().unwrap();
         study(folder.path(), sheet, volume);
         let path = folder.path().join("own.toml");
@@ -247,38 +247,38 @@ fn what_cannot_change_its_volume_is_told() {
         let done = gelbench(folder.path(), &["check", "small.toml"]).code(2);
         one_line(&done.get_output().stderr)
     };
-    let none = told("plane-strain", "", ["[volume]", ""]);
+    let none = message("plane-strain", "", ["[volume]", ""]);
     assert!(
         none.contains("is incompressible") && none.contains("poisson_ratio"),
         "{none}"
     );
-    let both = told(
+    let both = message(
         "plane-stress",
         "poisson_ratio = 0.3\nbulk_modulus = \"1 MPa\"",
         ["", ""],
     );
     assert!(both.contains("one of them is enough"), "{both}");
-    let half = told("plane-stress", "poisson_ratio = 0.5", ["", ""]);
+    let half = message("plane-stress", "poisson_ratio = 0.5", ["", ""]);
     assert!(half.contains("between -0.9 and 0.4999"), "{half}");
-    let energy = told(
+    let energy = message(
         "plane-stress",
         "poisson_ratio = 0.3\nenergy = \"cubic\"",
         ["", ""],
     );
     assert!(energy.contains("simo-taylor"), "{energy}");
-    let own = told(
+    let own = message(
         "plane-stress",
         "poisson_ratio = 0.3",
         ["law = \"neo-hooke\"", "law = \"blatz-ko\""],
     );
     assert!(own.contains("compressible by itself"), "{own}");
-    let water = told("plane-strain", "bulk_modulus = \"2.2 GPa\"", ["", ""]);
+    let water = message("plane-strain", "bulk_modulus = \"2.2 GPa\"", ["", ""]);
     assert!(
         water.contains("times its shear modulus") && water.contains("`poisson_ratio = 0.4999`"),
         "{water}"
     );
     assert!(!half.contains("unknown key"), "{half}");
-    let unknown = told("thick", "poisson_ratio = 0.3", ["", ""]);
+    let unknown = message("thick", "poisson_ratio = 0.3", ["", ""]);
     assert!(unknown.contains("plane-strain"), "{unknown}");
 }
 
@@ -297,10 +297,10 @@ fn a_foam_that_is_not_at_rest_is_refused() {
         let output = done.get_output();
         (output.status.code(), one_line(&output.stderr))
     };
-    let (code, told) = check("-0.5 MPa");
+    let (code, message) = check("-0.5 MPa");
     assert!(
-        code == Some(2) && told.contains("unstable from rest"),
-        "{told}"
+        code == Some(2) && message.contains("unstable from rest"),
+        "{message}"
     );
     assert_eq!(check("0.5 MPa").0, Some(0));
 }
@@ -308,7 +308,7 @@ fn a_foam_that_is_not_at_rest_is_refused() {
 /// At small strain E = 2 μ (1 + ν) instead of 3 μ; in plane strain the report has E, and not E/(1 − ν²).
 #[test]
 fn a_volume_that_changes_tension_is_warned_of() {
-    for (ratio, told) in [("0.4", true), ("0.4999", false)] {
+    for (ratio, message) in [("0.4", true), ("0.4999", false)] {
         let folder = TempDir::new().unwrap();
         study(
             folder.path(),
@@ -317,7 +317,7 @@ fn a_volume_that_changes_tension_is_warned_of() {
         );
         let done = gelbench(folder.path(), &["check", "small.toml"]).code(0);
         let warned = one_line(&done.get_output().stderr);
-        assert_eq!(warned.contains("constant volume"), told, "{warned}");
+        assert_eq!(warned.contains("constant volume"), message, "{warned}");
     }
     let card = gelbench::material::Card::parse("own", "own.toml", &card("poisson_ratio = 0.4"));
     let card = card.unwrap();

@@ -67,16 +67,16 @@ impl Browser {
 
     /// Moves the pointer over an element to some pixels from its middle; with the button held from where it was where it drags.
     pub fn point(&self, element: &str, path: &[[i64; 2]], drags: bool) {
-        let found = self.post(
+        let result = self.post(
             "/element",
             &json!({ "using": "css selector", "value": element }),
         );
         self.post(
             "/execute/sync",
-            &json!({ "script": "arguments[0].scrollIntoView({block: 'center'})", "args": [found] }),
+            &json!({ "script": "arguments[0].scrollIntoView({block: 'center'})", "args": [result] }),
         );
         let moves = path.iter().map(|[x, y]| {
-            json!({ "type": "pointerMove", "duration": 20, "x": x, "y": y, "origin": found })
+            json!({ "type": "pointerMove", "duration": 20, "x": x, "y": y, "origin": result })
         });
         let mut actions: Vec<Value> = moves.collect();
         if drags {
@@ -123,14 +123,14 @@ impl Browser {
         .ok()?;
         let mut answer = Vec::new();
         let mut part = [0; 65536];
-        let whole = loop {
+        let complete = loop {
             let count = stream.read(&mut part).ok()?;
             answer.extend(&part[..count]);
-            if let Some(whole) = body_of(&answer).or((count == 0).then(Vec::new)) {
-                break whole;
+            if let Some(complete) = body_of(&answer).or((count == 0).then(Vec::new)) {
+                break complete;
             }
         };
-        let value: Value = serde_json::from_slice(&whole).ok()?;
+        let value: Value = serde_json::from_slice(&complete).ok()?;
         Some(value["value"].clone())
     }
 }

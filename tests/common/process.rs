@@ -95,7 +95,7 @@ pub fn assert_ends(output: &Output, code: i32, words: &str) {
 
 /// All files below a folder by their names, but for partial folders.
 pub fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
-    let (mut found, mut open) = (BTreeMap::new(), vec![folder.to_owned()]);
+    let (mut result, mut open) = (BTreeMap::new(), vec![folder.to_owned()]);
     while let Some(next) = open.pop() {
         for entry in fs::read_dir(next).into_iter().flatten().flatten() {
             let path = entry.path();
@@ -108,11 +108,11 @@ pub fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
             if path.is_dir() && !name.starts_with(PARTIAL) {
                 open.push(path);
             } else if path.is_file() {
-                found.insert(name, fs::read(path).unwrap_or_default());
+                result.insert(name, fs::read(path).unwrap_or_default());
             }
         }
     }
-    found
+    result
 }
 
 /// The results that are the same bytes on every run: reports hold times.

@@ -4,7 +4,7 @@ use serde_json::Value;
 
 /// What of a value does not follow a schema, of the keywords that gelbench's schemas use.
 pub fn faults(schema: &Value, value: &Value, position: &str) -> Vec<String> {
-    let mut found = Vec::new();
+    let mut result = Vec::new();
     let matches = |name: &Value| match name.as_str() {
         Some("object") => value.is_object(),
         Some("array") => value.is_array(),
@@ -22,50 +22,50 @@ pub fn faults(schema: &Value, value: &Value, position: &str) -> Vec<String> {
     };
     if let Some(choices) = schema["anyOf"].as_array() {
         let mut each = choices.iter().map(|choice| faults(choice, value, position));
-        if each.all(|found| !found.is_empty()) {
-            found.push(format!("{position}: {value} is none of the choices"));
+        if each.all(|result| !result.is_empty()) {
+            result.push(format!("{position}: {value} is none of the choices"));
         }
     }
     let listed = schema["enum"].as_array();
     let constant = &schema["const"];
-    let beyond = |limit: &str, beyond: fn(f64, f64) -> bool| {
+    let farther = |limit: &str, farther: fn(f64, f64) -> bool| {
         let limit = schema[limit].as_f64();
         value
             .as_f64()
             .zip(limit)
-            .is_some_and(|(value, limit)| beyond(value, limit))
+            .is_some_and(|(value, limit)| farther(value, limit))
     };
-    let outside = beyond("minimum", |value, least| value < least)
-        || beyond("maximum", |value, most| value > most)
-        || beyond("exclusiveMinimum", |value, least| value <= least);
+    let outside = farther("minimum", |value, least| value < least)
+        || farther("maximum", |value, most| value > most)
+        || farther("exclusiveMinimum", |value, least| value <= least);
     if outside || !constant.is_null() && constant != value {
-        found.push(format!("{position}: {value}"));
+        result.push(format!("{position}: {value}"));
     }
     if !of_type || listed.is_some_and(|listed| !listed.contains(value)) {
-        found.push(format!("{position}: {value}"));
+        result.push(format!("{position}: {value}"));
     }
     for (index, item) in value.as_array().into_iter().flatten().enumerate() {
-        found.extend(faults(
+        result.extend(faults(
             &schema["items"],
             item,
             &format!("{position}[{index}]"),
         ));
     }
     let Some(entries) = value.as_object() else {
-        return found;
+        return result;
     };
     for key in schema["required"].as_array().into_iter().flatten() {
         if !entries.contains_key(key.as_str().unwrap()) {
-            found.push(format!("{position}: lacks {key}"));
+            result.push(format!("{position}: lacks {key}"));
         }
     }
     for (key, own) in entries {
         let position = format!("{position}.{key}");
         match (&schema["properties"][key], &schema["additionalProperties"]) {
-            (Value::Null, Value::Bool(false)) => found.push(format!("{position}: not allowed")),
-            (Value::Null, other) => found.extend(faults(other, own, &position)),
-            (known, _) => found.extend(faults(known, own, &position)),
+            (Value::Null, Value::Bool(false)) => result.push(format!("{position}: not allowed")),
+            (Value::Null, other) => result.extend(faults(other, own, &position)),
+            (known, _) => result.extend(faults(known, own, &position)),
         }
     }
-    found
+    result
 }

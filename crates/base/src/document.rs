@@ -101,10 +101,10 @@ impl Faults {
     }
 
     /// Notes a key that was not written and took its default.
-    fn defaulted(&self, said: String) {
+    fn defaulted(&self, printed: String) {
         let mut all = self.defaulted.borrow_mut();
-        if !all.contains(&said) {
-            all.push(said);
+        if !all.contains(&printed) {
+            all.push(printed);
         }
     }
 
@@ -162,26 +162,26 @@ impl<'a> Document<'a> {
             text: text.to_owned(),
         });
         let (spanned, syntax_faults) = DeTable::parse_recoverable(text);
-        let mut told = 0;
+        let mut output = 0;
         for fault in &syntax_faults {
             let (message, span) = (fault.message().trim(), fault.span().unwrap_or(0..0));
             let hint = syntax::remedy(text, &span, message);
             // Where the intention is unknown, later faults are consequences of the first.
             let is_broken = hint.is_none();
-            if is_broken || told < MOST_SYNTAX_TOLD {
+            if is_broken || output < MOST_SYNTAX_TOLD {
                 let diagnostic = Diagnostic {
                     hint: hint.or_else(|| syntax::advice(message)),
                     ..Diagnostic::error("", format!("{SYNTAX}: {message}"))
                 };
                 faults.push(diagnostic.at(&source, syntax::visible(text, span)));
-                told += 1;
+                output += 1;
             }
             if is_broken {
                 faults.is_broken.set(true);
                 break;
             }
         }
-        let more = syntax_faults.len() - told;
+        let more = syntax_faults.len() - output;
         if more > 0 {
             let message = format!("{SYNTAX}: {more} further syntax errors are not listed");
             faults.push(Diagnostic::error("", message).at(&source, text.len()..text.len()));

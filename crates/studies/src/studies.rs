@@ -130,7 +130,7 @@ impl OutputSettings {
         let folder = section.text("folder");
         let settings = Self {
             folder: (!folder.is_empty()).then(|| PathBuf::from(folder)),
-            vtk: section.flag("vtk"),
+            vtk: section.flag_or(true, "vtk"),
             plots: section.flag("plots"),
             report: section.flag("report"),
             springs: section.flag("springs"),

@@ -50,8 +50,8 @@ pub fn correct(bytes: &[u8]) -> Became {
     with_file("markers.csv", text.as_bytes(), |file| {
         let request = request(file.to_owned(), &mut choices);
         let field = MarkerStudy::prepare(request);
-        let found = field.and_then(|mut field| Ok((field.estimate(&|_| ())?, field)));
-        match found {
+        let result = field.and_then(|mut field| Ok((field.estimate(&|_| ())?, field)));
+        match result {
             Ok((estimates, field)) => {
                 let _ = field.all_doubts(&estimates);
                 let _ = written::results(&field, &estimates, "markers".into(), String::new(), 0.0);
@@ -171,8 +171,8 @@ pub fn fit(bytes: &[u8]) -> Became {
     let law = &LAWS[choices.below(LAWS.len())];
     let tests = [data];
     match fit_law(law, &tests, &settings) {
-        Ok(found) => {
-            let _ = (fit_json(&found, &tests), fit_picture(&found, &tests));
+        Ok(result) => {
+            let _ = (fit_json(&result, &tests), fit_picture(&result, &tests));
             Became::Complete
         }
         Err(Error::Solve { .. }) => Became::Unsolved,
@@ -229,10 +229,10 @@ pub fn identify(bytes: &[u8]) -> Became {
         argument: [Argument::Extension, Argument::Rate][choices.below(2)],
     };
     match identify_spring(&recording, settings, &|_| ()) {
-        Ok(found) => {
-            let _ = identification_json(&found, &recording, "spring.csv");
-            let _ = identification_picture(&found, &recording);
-            let _ = law_text(&found, &recording, "spring.csv");
+        Ok(result) => {
+            let _ = identification_json(&result, &recording, "spring.csv");
+            let _ = identification_picture(&result, &recording);
+            let _ = law_text(&result, &recording, "spring.csv");
             Became::Complete
         }
         Err(Error::Solve { .. }) => Became::Unsolved,

@@ -134,10 +134,10 @@ pub fn markers(bytes: &[u8]) -> Became {
         ..ReadSettings::default()
     };
     with_file("markers.csv", bytes, |file| {
-        let Ok(found) = read(&[file.to_owned()], &settings) else {
+        let Ok(result) = read(&[file.to_owned()], &settings) else {
             return Became::Refused;
         };
-        let _ = Outline::of_points(&found.series.positions());
+        let _ = Outline::of_points(&result.series.positions());
         Became::Complete
     })
 }

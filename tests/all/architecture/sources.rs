@@ -82,33 +82,33 @@ pub fn expand(tree: &str, before: &[String]) -> Vec<(ModulePath, String)> {
         };
         return vec![(all, own)];
     };
-    let (mut depth, mut start, mut found) = (0, 0, Vec::new());
+    let (mut depth, mut start, mut result) = (0, 0, Vec::new());
     for (at, c) in group.char_indices().chain([(group.len(), ',')]) {
         match c {
             '{' => depth += 1,
             '}' => depth -= 1,
             ',' if depth == 0 => {
                 let part = group[start..at].trim();
-                found.extend((!part.is_empty()).then(|| expand(part, &all)));
+                result.extend((!part.is_empty()).then(|| expand(part, &all)));
                 start = at + 1;
             }
             _ => {}
         }
     }
-    found.into_iter().flatten().collect()
+    result.into_iter().flatten().collect()
 }
 
 /// The `use` statements of a code: whether they pass on, and what they name.
 fn uses(code: &str) -> Vec<(bool, &str)> {
-    let mut found = Vec::new();
+    let mut result = Vec::new();
     for (at, _) in code.match_indices("use ") {
         let line = code[..at].rsplit('\n').next().unwrap().trim();
         if line.is_empty() || line.starts_with("pub") && line.len() < 12 {
             let rest = &code[at + 4..];
-            found.push((!line.is_empty(), &rest[..rest.find(';').unwrap()]));
+            result.push((!line.is_empty(), &rest[..rest.find(';').unwrap()]));
         }
     }
-    found
+    result
 }
 
 impl Source {
@@ -260,13 +260,13 @@ pub fn functions(code: &str) -> Vec<(&str, usize)> {
             .all(|c| c.is_alphanumeric() || " ()_:\"".contains(c));
         let end = format!("{}}}", &line[..line.len() - head.len()]);
         let length = lines[at..].iter().position(|line| *line == end)?;
-        let whole = lines[at..=at + length]
+        let complete = lines[at..=at + length]
             .iter()
             .any(|line| line.ends_with('{'));
-        (plain && whole).then_some((at, length + 1))
+        (plain && complete).then_some((at, length + 1))
     };
-    let found = lines.iter().enumerate().filter_map(of);
-    found
+    let result = lines.iter().enumerate().filter_map(of);
+    result
         .map(|(at, length)| (lines[at].trim(), length))
         .collect()
 }

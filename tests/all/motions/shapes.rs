@@ -21,8 +21,8 @@ fn table(folder: &Path, name: &str) -> Vec<(String, Vec<f64>)> {
 }
 
 fn column(table: &[(String, Vec<f64>)], head: &str) -> Vec<f64> {
-    let found = table.iter().find(|(own, _)| own == head);
-    found.unwrap_or_else(|| panic!("{head}")).1.clone()
+    let actual = table.iter().find(|(own, _)| own == head);
+    actual.unwrap_or_else(|| panic!("{head}")).1.clone()
 }
 
 const MATERIAL: &str = "[material]\ncard = \"neo-hooke\"\ndensity = \"1 g/cm^3\"\n";
@@ -106,7 +106,7 @@ fn a_slender_strip_in_tension_vibrates_as_a_stiff_string() {
         .map(|(y, t)| t[0] + (t[1] - t[0]) * (y[0] - mean) / (y[0] - y[1]))
         .collect();
     let periods = (crossings.len() - 1) as f64;
-    let found = periods / (crossings[crossings.len() - 1] - crossings[0]);
+    let actual = periods / (crossings[crossings.len() - 1] - crossings[0]);
     let (lambda, density, length): (f64, f64, f64) = (1.5, 1e-9, 90.0);
     let width = lambda.powf(-0.5);
     let stress = 2.0 * c10 * (lambda * lambda - 1.0 / lambda);
@@ -114,7 +114,10 @@ fn a_slender_strip_in_tension_vibrates_as_a_stiff_string() {
     let e = (tangent * width * width / (12.0 * stress * length * length)).sqrt();
     let stiff = 1.0 + 2.0 * e + (4.0 + 0.5 * std::f64::consts::PI.powi(2)) * e * e;
     let expected = (stress / density).sqrt() / (2.0 * length) * stiff;
-    assert!((found / expected - 1.0).abs() < 5e-3, "{found} {expected}");
+    assert!(
+        (actual / expected - 1.0).abs() < 5e-3,
+        "{actual} {expected}"
+    );
 }
 
 /// A traction that increases slowly leads to the displacement of the study at rest.
@@ -161,13 +164,13 @@ fn what_a_motion_does_not_have_is_refused_at_its_place() {
     );
     let folder = folder_with(&study);
     let done = gelbench(folder.path(), &["check", "small.toml"]).code(2);
-    let told = words(&done.get_output().stderr);
+    let message = words(&done.get_output().stderr);
     for part in [
         "support[1].kind: a rotation in time is not computed",
         "support[2].kind: a rigid grip that is pulled by a force has no equation of motion",
         "load[1].kind: a pressure that follows the edges is not computed in time",
         "path.measured_group: the specimen has no group `rigth`",
     ] {
-        assert!(told.contains(part), "{part}: {told}");
+        assert!(message.contains(part), "{part}: {message}");
     }
 }

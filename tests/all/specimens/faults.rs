@@ -6,7 +6,7 @@ use crate::common::{folder_with, gelbench, one_line, words};
 #[test]
 fn faults_of_a_specimen_are_told_with_their_place() {
     let strip = "shape = \"strip\"\nlength = \"20 mm\"\nwidth = \"10 mm\"\ncells = 6";
-    for (shape, rest, told) in [
+    for (shape, rest, message) in [
         (
             strip,
             PULLED.replace("group = \"right\"", "group = \"rihgt\""),
@@ -52,16 +52,16 @@ fn faults_of_a_specimen_are_told_with_their_place() {
     ] {
         let folder = folder_with(&specimen(shape, &rest));
         let done = gelbench(folder.path(), &["check", "small.toml"]).code(2);
-        let found = one_line(&done.get_output().stderr);
-        assert!(found.contains(told), "{told}: {found}");
+        let result = one_line(&done.get_output().stderr);
+        assert!(result.contains(message), "{message}: {result}");
     }
 }
 
 /// Nothing that a specimen is made of, held by or loaded with is taken from the study that comes along.
 #[test]
 fn what_a_study_does_not_say_is_not_done() {
-    let whole = specimen(STRIP, PULLED);
-    for (left_out, told) in [
+    let complete = specimen(STRIP, PULLED);
+    for (left_out, message) in [
         (
             "[material]\ncard = \"pva-10-yeoh\"\n",
             "material.card: is missing",
@@ -76,29 +76,29 @@ fn what_a_study_does_not_say_is_not_done() {
             "path.measured_group: is missing",
         ),
     ] {
-        assert!(whole.contains(left_out), "{left_out}");
-        let folder = folder_with(&whole.replace(left_out, ""));
+        assert!(complete.contains(left_out), "{left_out}");
+        let folder = folder_with(&complete.replace(left_out, ""));
         let done = gelbench(folder.path(), &["check", "small.toml"]).code(2);
-        let found = words(&done.get_output().stderr);
-        assert!(found.contains(told), "{told}: {found}");
-        assert!(found.contains("it has no default"), "{found}");
+        let result = words(&done.get_output().stderr);
+        assert!(result.contains(message), "{message}: {result}");
+        assert!(result.contains("it has no default"), "{result}");
     }
     let unheld = &PULLED[..PULLED.find("[[support]]").unwrap()];
     let folder = folder_with(&specimen(STRIP, unheld));
     let done = gelbench(folder.path(), &["check", "small.toml"]).code(2);
-    let found = words(&done.get_output().stderr);
+    let result = words(&done.get_output().stderr);
     assert!(
-        found.contains("support: is missing: nothing holds the specimen"),
-        "{found}"
+        result.contains("support: is missing: nothing holds the specimen"),
+        "{result}"
     );
     // A list that holds no tables is no list of supports.
     let listed = format!("support = [1, 2]\n{}", specimen(STRIP, unheld));
     let folder = folder_with(&listed);
     let done = gelbench(folder.path(), &["check", "small.toml"]).code(2);
-    let found = words(&done.get_output().stderr);
+    let result = words(&done.get_output().stderr);
     assert!(
-        found.contains("support: must be a list of tables"),
-        "{found}"
+        result.contains("support: must be a list of tables"),
+        "{result}"
     );
 }
 
@@ -107,7 +107,7 @@ fn what_a_study_does_not_say_is_not_done() {
 fn a_fault_points_to_the_entry_that_it_is_about() {
     let upside = PULLED.replace("y = \"0 mm\"\n", "");
     let free = upside.replace("kind = \"clamp\"", "kind = \"displacement\"\nx = \"0 mm\"");
-    for (rest, line, told) in [
+    for (rest, line, message) in [
         (
             format!("{PULLED}[[load]]\ngroup = \"botom\"\nkind = \"force\"\nx = \"1 N\"\n"),
             "group = \"botom\"",
@@ -124,10 +124,10 @@ fn a_fault_points_to_the_entry_that_it_is_about() {
     ] {
         let folder = folder_with(&specimen(STRIP, &rest));
         let done = gelbench(folder.path(), &["check", "small.toml"]).code(2);
-        let found = words(&done.get_output().stderr);
+        let result = words(&done.get_output().stderr);
         assert!(
-            found.contains(told) && found.contains(line),
-            "{told}: {found}"
+            result.contains(message) && result.contains(line),
+            "{message}: {result}"
         );
     }
 }

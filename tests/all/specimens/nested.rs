@@ -76,7 +76,7 @@ fn nested_meshes_lead_to_the_fields_of_the_direct_method_on_every_shape() {
 #[test]
 fn nested_meshes_that_cannot_be_are_refused() {
     let shape = "shape = \"strip\"\nlength = \"20 mm\"\nwidth = \"10 mm\"\ncells = 6";
-    for (corrector, told) in [
+    for (corrector, message) in [
         ("method = \"nestd\"", "did you mean \"nested\"?"),
         (
             "method = \"nested\"\ntolerance = 1e-9",
@@ -86,8 +86,8 @@ fn nested_meshes_that_cannot_be_are_refused() {
         let rest = format!("{PULLED}[corrector]\n{corrector}\n");
         let folder = folder_with(&specimen(shape, &rest));
         let done = gelbench(folder.path(), &["check", "small.toml"]).code(2);
-        let found = words(&done.get_output().stderr);
-        assert!(found.contains(told), "{corrector}: {found}");
+        let result = words(&done.get_output().stderr);
+        assert!(result.contains(message), "{corrector}: {result}");
     }
     let folder = folder_with(&specimen(shape, PULLED));
     gelbench(folder.path(), &["run", "small.toml", "--output", "out"]).code(0);
@@ -95,9 +95,9 @@ fn nested_meshes_that_cannot_be_are_refused() {
     let rest = format!("{PULLED}[corrector]\nmethod = \"nested\"\n");
     fs::write(folder.path().join("small.toml"), specimen(mesh, &rest)).unwrap();
     let done = gelbench(folder.path(), &["check", "small.toml"]).code(2);
-    let found = words(&done.get_output().stderr);
+    let result = words(&done.get_output().stderr);
     assert!(
-        found.contains("the mesh of a file has no coarser meshes"),
-        "{found}"
+        result.contains("the mesh of a file has no coarser meshes"),
+        "{result}"
     );
 }

@@ -22,8 +22,8 @@ fn a_sheet_that_nothing_moves_is_told_and_passes() {
         [[load]]\ngroup = \"right\"\nkind = \"traction\"\nx = \"0 MPa\"\n";
     let folder = folder_with(&specimen(STRIP, rest));
     let done = gelbench(folder.path(), &["check", "small.toml"]).code(0);
-    let told = words(&done.get_output().stderr);
-    assert!(told.contains("the sheet stays at rest"), "{told}");
+    let message = words(&done.get_output().stderr);
+    assert!(message.contains("the sheet stays at rest"), "{message}");
     let report = passed(folder.path());
     assert!(report.contains("the sheet stays at rest"), "{report}");
     for wrong in ["NaN", "no effect"] {
@@ -142,11 +142,11 @@ fn a_report_says_the_material_and_the_plane_state_of_its_study() {
     let folder = folder_with(&study);
     fs::write(folder.path().join("foam.toml"), card).unwrap();
     let report = passed(folder.path());
-    for said in [
+    for output in [
         "# Specimen of foam\n",
         "of a compressible material (bulk modulus κ = 0.2167 MPa) in plane strain",
     ] {
-        assert!(report.contains(said), "{said}: {report}");
+        assert!(report.contains(output), "{output}: {report}");
     }
     assert!(!report.contains("incompressible"), "{report}");
 }
@@ -164,6 +164,9 @@ fn a_moment_that_no_requirement_judges_is_told() {
     let shape = "shape = \"strip-with-hole\"\nlength = \"40 mm\"\nwidth = \"20 mm\"\nhole_diameter = \"8 mm\"\ncells = 8";
     let folder = folder_with(&specimen(shape, &rest));
     let done = gelbench(folder.path(), &["run", "small.toml", "--output", "out"]);
-    let told = words(&done.get_output().stderr);
-    assert!(told.contains("but their moment at load factor 1"), "{told}");
+    let message = words(&done.get_output().stderr);
+    assert!(
+        message.contains("but their moment at load factor 1"),
+        "{message}"
+    );
 }

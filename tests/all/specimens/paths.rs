@@ -28,8 +28,8 @@ fn a_pressure_on_an_edge_with_free_ends_is_followed_to_its_end() {
     // By an independent code on the same mesh of 512 cells.
     for (step, pulled) in [(0, 1.33281), (2, 14.8904)] {
         let groups = &report["steps"][step]["finite_element"]["groups"];
-        let found = groups["right"]["displacement_mm"][0].as_f64().unwrap();
-        assert!((found / pulled - 1.0).abs() < 2e-4, "{step}: {found}");
+        let result = groups["right"]["displacement_mm"][0].as_f64().unwrap();
+        assert!((result / pulled - 1.0).abs() < 2e-4, "{step}: {result}");
     }
 }
 
@@ -45,8 +45,8 @@ fn a_sheet_that_hardly_changes_its_area_is_not_called_one_of_several() {
         [source]\ncitation = \"none\"\nspecimen = \"none\"\n";
     fs::write(folder.path().join("nh.toml"), card).unwrap();
     let done = gelbench(folder.path(), &["run", "small.toml"]);
-    let told = words(&done.get_output().stderr);
-    assert!(!told.contains("several equilibria"), "{told}");
+    let message = words(&done.get_output().stderr);
+    assert!(!message.contains("several equilibria"), "{message}");
     let report = report_of(folder.path());
     let force = number(&report["steps"][1]["finite_element"], &["measured_N"]);
     // By an independent code.

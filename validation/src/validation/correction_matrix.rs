@@ -175,8 +175,8 @@ impl System {
             let mut minimum = |step: f64| -> Result<f64, FactorFault> {
                 let mut moved = self.values.clone();
                 moved[row] -= step;
-                let found = factor.project(&moved, &self.pull)?.step;
-                let squares = found
+                let actual = factor.project(&moved, &self.pull)?.step;
+                let squares = actual
                     .iter()
                     .zip(&self.pull)
                     .map(|(d, p)| 0.5 * (d - p).powi(2));
@@ -190,11 +190,11 @@ impl System {
 }
 
 /// Largest difference of two projections, relative to the largest entry of the second.
-fn far(found: &Projection, expected: &Projection) -> f64 {
+fn far(actual: &Projection, expected: &Projection) -> f64 {
     let far = |a: &[f64], b: &[f64]| {
         largest(a.iter().zip(b).map(|(a, b)| a - b)) / largest(b.iter().copied())
     };
-    far(&found.step, &expected.step).max(far(&found.multipliers, &expected.multipliers))
+    far(&actual.step, &expected.step).max(far(&actual.multipliers, &expected.multipliers))
 }
 
 /// Y for unequal weights compared with its definition, computed with an explicit inverse: largest difference.
@@ -229,6 +229,6 @@ fn symmetric(random: &mut ChaCha8Rng, unknowns: usize) -> Result<f64, FactorFaul
         Factor::new(rows.clone(), vec![1.0; rows.columns()], unknowns, solver)?
             .project(&values, &pull)
     };
-    let found = project(Solver::Symmetric, Some((0..unknowns).collect()))?;
-    Ok(far(&found, &project(Solver::Dense, None)?))
+    let actual = project(Solver::Symmetric, Some((0..unknowns).collect()))?;
+    Ok(far(&actual, &project(Solver::Dense, None)?))
 }

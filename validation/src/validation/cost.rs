@@ -152,7 +152,7 @@ impl Beside {
         } else {
             "less accurate than"
         };
-        let [own, other] = [&self.corrected, &self.elements].map(|way| way.name);
+        let [own, other] = [&self.corrected, &self.elements].map(|direction| direction.name);
         format!("{own}: {accuracy} {other}")
     }
 
@@ -176,17 +176,19 @@ fn outcome(springs: Way, paths: [Beside; 2]) -> Outcome {
     };
     let of_paths = paths
         .into_iter()
-        .flat_map(|beside| [beside.corrected, beside.elements]);
+        .flat_map(|adjacent| [adjacent.corrected, adjacent.elements]);
     let ways: Vec<Way> = [springs].into_iter().chain(of_paths).collect();
-    let row = |way: &Way| {
+    let row = |direction: &Way| {
         vec![
-            way.name.to_owned(),
-            way.nodes.to_string(),
-            number(way.departure),
+            direction.name.to_owned(),
+            direction.nodes.to_string(),
+            number(direction.departure),
         ]
     };
     let head = "method | nodes | error of the departure from affine [%]";
-    let times = ways.iter().map(|way| (way.name.to_owned(), way.seconds));
+    let times = ways
+        .iter()
+        .map(|direction| (direction.name.to_owned(), direction.seconds));
     Outcome {
         checks,
         claims: vec![claim],
@@ -202,20 +204,20 @@ mod tests {
 
     /// What is said of a direct path with these departures in % next to a climb that is as accurate as its elements.
     fn said(corrected: f64, elements: f64) -> (String, bool) {
-        let way = |name, departure| Way {
+        let direction = |name, departure| Way {
             name,
             nodes: 9,
             departure,
             seconds: 1.0,
         };
-        let beside = |corrected, elements| Beside {
-            corrected: way("corrected", corrected),
-            elements: way("Q1", elements),
+        let adjacent = |corrected, elements| Beside {
+            corrected: direction("corrected", corrected),
+            elements: direction("Q1", elements),
         };
-        let ways = [beside(corrected, elements), beside(0.2, 0.2)];
-        let found = outcome(way("springs", 30.0), ways);
-        let passed = found.checks.iter().all(Check::passed);
-        (found.claims[0].reproduced.clone(), passed)
+        let ways = [adjacent(corrected, elements), adjacent(0.2, 0.2)];
+        let actual = outcome(direction("springs", 30.0), ways);
+        let passed = actual.checks.iter().all(Check::passed);
+        (actual.claims[0].reproduced.clone(), passed)
     }
 
     #[test]

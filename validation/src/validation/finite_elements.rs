@@ -75,9 +75,9 @@ fn solve(model: &Model, name: &str, steps: usize) -> Result<State, Error> {
 }
 
 /// Largest distance of a field from another one at the nodes of a mesh, over the largest size of the other.
-fn largest_error(mesh: &Mesh, found: &[f64], exact: impl Fn([f64; 2]) -> [f64; 2]) -> f64 {
+fn largest_error(mesh: &Mesh, actual: &[f64], exact: impl Fn([f64; 2]) -> [f64; 2]) -> f64 {
     let (mut worst, mut largest) = (0.0_f64, 0.0_f64);
-    for (position, u) in mesh.nodes.iter().zip(found.chunks_exact(2)) {
+    for (position, u) in mesh.nodes.iter().zip(actual.chunks_exact(2)) {
         let exact = exact(*position);
         worst = worst.max((u[0] - exact[0]).hypot(u[1] - exact[1]));
         largest = largest.max(exact[0].hypot(exact[1]));

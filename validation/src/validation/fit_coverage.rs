@@ -158,8 +158,8 @@ impl Subject {
         TestData::parse(name, &text, &Statements::new())
     }
 
-    fn trial(&self, found: &Fit) -> Trial {
-        let quality = &found.quality;
+    fn trial(&self, actual: &Fit) -> Trial {
+        let quality = &actual.quality;
         let truths = self.values.iter().zip(&quality.estimates);
         let held = |(truth, estimate): (&f64, &Estimate)| {
             let [low, high] = estimate.interval;

@@ -53,7 +53,7 @@ struct Plates {
 impl Plates {
     /// All shapes on all meshes, of every law.
     fn compute(&self, progress: Progress) -> Vec<Found> {
-        let mut found = Vec::new();
+        let mut result = Vec::new();
         for (law, material) in samples::all() {
             progress.tell(law);
             let pairs = self.sizes.iter();
@@ -69,9 +69,9 @@ impl Plates {
                 cells,
             };
             let plates: Vec<Plate> = pairs.map(plate).collect();
-            found.par_extend(plates.par_iter().flat_map_iter(Plate::compute));
+            result.par_extend(plates.par_iter().flat_map_iter(Plate::compute));
         }
-        found
+        result
     }
 }
 
@@ -100,7 +100,7 @@ impl Plate {
         let mut climb = Climb::even(&self.problem, self.cells, DifferenceScheme::Gauss, settings);
         let direct = self.direct();
         let stretches = self.problem.stretches.iter().enumerate();
-        let found = |(step, stretch): (usize, &f64)| {
+        let result = |(step, stretch): (usize, &f64)| {
             let climbed = climb.correct(*stretch);
             let direct: Option<&State> = direct.get(step);
             let share = match (&climbed, direct) {
@@ -115,7 +115,7 @@ impl Plate {
                 position: self.describe(*stretch),
             }
         };
-        stretches.map(found).collect()
+        stretches.map(result).collect()
     }
 
     /// The fields of the same equations by Newton's method from stretch to stretch, as far as there are any.
@@ -123,8 +123,8 @@ impl Plate {
         let mesh = Mesh::plate(self.problem.size, self.cells, CellShape::Quad4);
         let energy = DifferenceScheme::Gauss.energy(&self.problem, &mesh);
         let model = self.problem.on(&mesh, &energy);
-        let found = model.solve(&self.problem.stretches, NEWTON, &|_| ());
-        found.unwrap_or_else(|end| end.states)
+        let result = model.solve(&self.problem.stretches, NEWTON, &|_| ());
+        result.unwrap_or_else(|end| end.states)
     }
 
     fn describe(&self, stretch: f64) -> String {
@@ -145,15 +145,15 @@ fn share(climbed: &ClimbSolution, direct: &[f64]) -> f64 {
     distance / climbed.discretisation_error
 }
 
-fn outcome(found: &[Found]) -> Outcome {
-    let lost = found.iter();
-    let lost = lost.filter(|found| found.direct && found.climbed.is_err());
+fn outcome(result: &[Found]) -> Outcome {
+    let lost = result.iter();
+    let lost = lost.filter(|result| result.direct && result.climbed.is_err());
     let missing = "plates where the direct method converges and the climb does not";
     let distance = "largest distance to the direct method's field over the discretisation error";
     let explanation = "What each climb started from, and the largest distance between its field and that of Newton's method \
                        on the same equations (root mean square over the nodes), relative to the discretisation error that \
                        the climb states:";
-    let mut blocks = vec![Block::paragraph(explanation), table_of_laws(found)];
+    let mut blocks = vec![Block::paragraph(explanation), table_of_laws(result)];
     let positions = lost
         .clone()
         .map(|lost| format!("No field from the climb: {}", lost.position));
@@ -162,7 +162,7 @@ fn outcome(found: &[Found]) -> Outcome {
         checks: vec![
             check(missing, "–", lost.count() as f64)
                 .at_most(0.0, "result independent of the start"),
-            check(distance, "–", worst_share(found.iter())).at_most(0.1, "the same equations"),
+            check(distance, "–", worst_share(result.iter())).at_most(0.1, "the same equations"),
         ],
         blocks,
         ..Outcome::default()
@@ -170,21 +170,21 @@ fn outcome(found: &[Found]) -> Outcome {
 }
 
 /// The largest share, one that is not a number where no field can be compared.
-fn worst_share<'a>(found: impl Iterator<Item = &'a Found>) -> f64 {
-    let shares = found
-        .map(|found| found.share)
+fn worst_share<'a>(result: impl Iterator<Item = &'a Found>) -> f64 {
+    let shares = result
+        .map(|result| result.share)
         .filter(|share| !share.is_nan());
     shares.reduce(larger).unwrap_or(f64::NAN)
 }
 
 /// A row for each law: how often each start led to the field, and the largest share.
-fn table_of_laws(found: &[Found]) -> Block {
-    let mut laws: Vec<&str> = found.iter().map(|found| found.law).collect();
+fn table_of_laws(result: &[Found]) -> Block {
+    let mut laws: Vec<&str> = result.iter().map(|result| result.law).collect();
     laws.dedup();
     let row = |law: &&str| {
-        let own = || found.iter().filter(|found| found.law == *law);
+        let own = || result.iter().filter(|result| result.law == *law);
         let mut starts = BTreeMap::new();
-        for climbed in own().filter_map(|found| found.climbed.as_ref().ok()) {
+        for climbed in own().filter_map(|result| result.climbed.as_ref().ok()) {
             let by_path = if climbed.provenance.by_load_path.is_empty() {
                 ""
             } else {
@@ -198,7 +198,7 @@ fn table_of_laws(found: &[Found]) -> Block {
             .iter()
             .map(|(start, count)| format!("{start}: {count}"))
             .collect();
-        let neither = own().filter(|found| !found.direct).count();
+        let neither = own().filter(|result| !result.direct).count();
         vec![
             (*law).to_owned(),
             own().count().to_string(),

@@ -71,10 +71,10 @@ fn compute(finest: usize, progress: Progress) -> Result<Outcome, Error> {
         progress.tell(&format!("{material}, {element}, {along} × {across} cells"));
         let solved = Solved::new(&material, along, &element)?;
         for row in rows {
-            let Some(found) = solved.at(row.stretch) else {
+            let Some(actual) = solved.at(row.stretch) else {
                 continue;
             };
-            let computed = [found.force, found.mid_width, found.energy];
+            let computed = [actual.force, actual.mid_width, actual.energy];
             let largest = worst.entry([row.code, element.clone()]).or_insert(0.0);
             for (computed, expected) in computed.into_iter().zip(row.values) {
                 let error = expected.map_or(0.0, |expected| (computed / expected - 1.0).abs());
@@ -112,15 +112,15 @@ fn converged(material: &str, finest: usize, progress: Progress) -> Result<[Check
         let numbers = line.split(',').skip(1).filter_map(|cell| cell.parse().ok());
         let numbers: Vec<f64> = numbers.collect();
         let measures = meshes.each_ref().map(|solved| {
-            let found = solved.at(numbers[0]);
-            found.expect("the published stretches are computed")
+            let actual = solved.at(numbers[0]);
+            actual.expect("the published stretches are computed")
         });
         let error = |value: fn(&Measures) -> f64, expected: f64| {
-            let found = richardson(measures.each_ref().map(value)).extrapolated;
-            (found / expected - 1.0).abs()
+            let actual = richardson(measures.each_ref().map(value)).extrapolated;
+            (actual / expected - 1.0).abs()
         };
-        force = force.max(error(|found| found.force, numbers[1]));
-        width = width.max(error(|found| found.mid_width, numbers[2]));
+        force = force.max(error(|actual| actual.force, numbers[1]));
+        width = width.max(error(|actual| actual.mid_width, numbers[2]));
     }
     let check = |quantity: &str, error: f64| {
         let what = format!("{material}: converged {quantity}, largest relative difference");

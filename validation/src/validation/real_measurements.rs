@@ -115,8 +115,8 @@ struct Estimated {
 impl Estimated {
     fn rows(&self, name: &str) -> Vec<Vec<String>> {
         let frames = self.frames.iter().zip(&self.estimates);
-        let row = |((frame, markers), found): (&(usize, usize), &FieldEstimate)| {
-            let verdict = &found.verdict;
+        let row = |((frame, markers), actual): (&(usize, usize), &FieldEstimate)| {
+            let verdict = &actual.verdict;
             let reasons: Vec<String> = verdict.reasons.iter().map(|one| one.words()).collect();
             let trial = verdict.trials.first().filter(|_| !reasons.is_empty());
             let length = verdict.correlation.map(|one| number(one.length));
@@ -124,7 +124,7 @@ impl Estimated {
                 name.to_owned(),
                 frame.to_string(),
                 markers.to_string(),
-                number(found.noise),
+                number(actual.noise),
                 length.unwrap_or_default(),
                 verdict.answer.words().to_owned(),
                 reasons.join("; "),
@@ -138,17 +138,17 @@ impl Estimated {
 
     fn checks(&self, name: &str, expected: Answer) -> [Check; 2] {
         let count = self.estimates.len() as f64;
-        let told = self.estimates.iter();
-        let told = told
-            .filter(|found| meets(found.verdict.answer, expected))
+        let message = self.estimates.iter();
+        let message = message
+            .filter(|actual| meets(actual.verdict.answer, expected))
             .count() as f64;
-        let imbalance = self.estimates.iter().map(|found| found.imbalance);
+        let imbalance = self.estimates.iter().map(|actual| actual.imbalance);
         let imbalance = imbalance.fold(0.0, larger);
         [
             check(
                 format!("{name}: frames that are {}", required(expected)),
                 "%",
-                100.0 * told / count,
+                100.0 * message / count,
             )
             .at_least(100.0, "all frames share the same faults"),
             check(
@@ -186,11 +186,11 @@ fn compute(fields: Vec<MeasuredField>, progress: Progress) -> Outcome {
     for field in &fields {
         progress.tell(&field.name);
         match field.estimate() {
-            Ok(found) => {
-                rows.extend(found.rows(&field.name));
+            Ok(actual) => {
+                rows.extend(actual.rows(&field.name));
                 outcome
                     .checks
-                    .extend(found.checks(&field.name, field.expected));
+                    .extend(actual.checks(&field.name, field.expected));
             }
             // Failures are shown among the others.
             Err(fault) => outcome.checks.push(Check::fault(

@@ -73,18 +73,18 @@ fn compute(settings: &Settings, progress: Progress) -> Result<Outcome, Error> {
     let mut rows = coarse.rows(settings.coarse);
     let mut noisy = Vec::new();
     for noise in &settings.noise {
-        let found = Noisy {
+        let actual = Noisy {
             noise: *noise,
             seeds: settings.seeds,
             rigid: fields.noisy(*noise, Grips::Rigid, progress)?,
             unknown: fields.noisy(*noise, Grips::Unknown, progress)?,
         };
-        rows.extend(found.rows());
+        rows.extend(actual.rows());
         if *noise <= settings.checked_up_to {
-            outcome.checks.extend(found.checks());
-            outcome.claims.push(found.claim(&coarse));
+            outcome.checks.extend(actual.checks());
+            outcome.claims.push(actual.claim(&coarse));
         }
-        noisy.push(found);
+        noisy.push(actual);
     }
     let head = "data | before [%] | after [%] | correction [%] | seeds converged";
     outcome.blocks = vec![Block::paragraph(EXPLANATION), table(head, rows)];

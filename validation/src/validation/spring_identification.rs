@@ -67,12 +67,12 @@ fn compute(settings: Settings, progress: Progress) -> Result<Outcome, Error> {
             seed: settings.sample.seed + seed,
             ..settings.sample
         };
-        let found = identify(
+        let actual = identify(
             &sample.recording(),
             IdentificationSettings::default(),
             &|_| (),
         )?;
-        Ok(compare(&found, &positions))
+        Ok(compare(&actual, &positions))
     };
     let trials: Vec<Trial> = seeds.par_iter().map(one).collect::<Result<_, _>>()?;
     let recording = settings.sample.recording();
@@ -105,7 +105,7 @@ fn positions(settings: &Settings) -> Vec<f64> {
     (0..settings.positions).map(position).collect()
 }
 
-fn compare(found: &Identification, positions: &[f64]) -> Trial {
+fn compare(actual: &Identification, positions: &[f64]) -> Trial {
     let at = |function: &Function, truth: fn(f64) -> f64, x: f64| {
         let (estimate, truth) = (function.at(x), truth(x));
         let within = |[low, high]: [f64; 2]| (low..=high).contains(&truth);
@@ -118,7 +118,7 @@ fn compare(found: &Identification, positions: &[f64]) -> Trial {
         }
     };
     [0, 1].map(|index| {
-        let (_, _, function) = found.functions()[index];
+        let (_, _, function) = actual.functions()[index];
         positions
             .iter()
             .map(|x| at(function, TRUTH[index], *x))

@@ -21,9 +21,9 @@ mod spring;
 pub fn prepare(root: &Section, _folder: &Path) -> Computation {
     let cells = section(root, "mesh", |mesh| {
         let cells = mesh.multiples("cells", Bound::Within(3.0, 96.0), f64::INFINITY);
-        let whole = |cells: &f64| cells.fract() == 0.0 && (*cells as usize).is_multiple_of(3);
+        let complete = |cells: &f64| cells.fract() == 0.0 && (*cells as usize).is_multiple_of(3);
         let doubled = cells.windows(2).all(|pair| pair[1] == 2.0 * pair[0]);
-        if cells.len() < 3 || !cells.iter().all(whole) || !doubled {
+        if cells.len() < 3 || !cells.iter().all(complete) || !doubled {
             mesh.fault(
                 "cells",
                 "must be three or more numbers, each twice the previous one and a multiple of 3",

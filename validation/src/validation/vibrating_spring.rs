@@ -279,10 +279,10 @@ fn unknown_constants(
         .checks
         .extend(constants.iter().flat_map(Regressed::checks));
     let rows = constants.iter();
-    let rows = rows.map(|found| {
+    let rows = rows.map(|actual| {
         row(
-            &found.name,
-            [found.truth, found.mean, found.spread, found.bound],
+            &actual.name,
+            [actual.truth, actual.mean, actual.spread, actual.bound],
         )
     });
     let head = "constant | true value | mean | spread | Cramér-Rao bound";

@@ -7,14 +7,14 @@ pub fn number(kind: char, bytes: &[u8], big_endian: bool) -> f64 {
     if big_endian {
         little[..bytes.len()].reverse();
     }
-    let whole = u64::from_le_bytes(little);
+    let complete = u64::from_le_bytes(little);
     match (kind, bytes.len()) {
-        ('f', 4) => f64::from(f32::from_bits(whole as u32)),
-        ('f', _) => f64::from_bits(whole),
+        ('f', 4) => f64::from(f32::from_bits(complete as u32)),
+        ('f', _) => f64::from_bits(complete),
         ('i', size) => {
             let unused = 64 - 8 * size as u32;
-            ((whole << unused) as i64 >> unused) as f64
+            ((complete << unused) as i64 >> unused) as f64
         }
-        _ => whole as f64,
+        _ => complete as f64,
     }
 }

@@ -69,8 +69,8 @@ impl<R: ColumnRole> ChosenColumns<R> {
                 return fault(format!("`{part}` names no column"), &hint);
             };
             let (role, name) = (role.trim(), name.trim());
-            let found = R::NAMES.iter().find(|(known, _)| *known == role);
-            let Some((_, found)) = found else {
+            let actual = R::NAMES.iter().find(|(known, _)| *known == role);
+            let Some((_, actual)) = actual else {
                 let known: Vec<_> = R::NAMES.iter().map(|(known, _)| *known).collect();
                 let hint = suggestion(role, &known, "known quantities:");
                 return fault(format!("`{role}` is not a known quantity"), &hint);
@@ -81,7 +81,7 @@ impl<R: ColumnRole> ChosenColumns<R> {
                     "write its name after the =",
                 );
             }
-            if all.iter().any(|(known, _)| known == found) {
+            if all.iter().any(|(known, _)| known == actual) {
                 let message = format!("two columns are named for `{role}`");
                 return fault(message, "name one");
             }
@@ -89,7 +89,7 @@ impl<R: ColumnRole> ChosenColumns<R> {
                 let message = format!("the column `{name}` is named twice");
                 return fault(message, "assign each column to one quantity");
             }
-            all.push((*found, name.to_owned()));
+            all.push((*actual, name.to_owned()));
         }
         Ok(Self(all))
     }
@@ -99,15 +99,15 @@ impl<R: ColumnRole> ChosenColumns<R> {
     /// # Errors
     /// [`Error::Input`] with every name that the table does not have, or has twice.
     pub fn on(&self, table: &Table) -> Result<FoundColumns<R>, Error> {
-        let (mut found, mut faults) = (Vec::new(), Vec::new());
+        let (mut actual, mut faults) = (Vec::new(), Vec::new());
         for (role, name) in &self.0 {
             match column_named(table, name) {
-                Ok(index) => found.push((*role, index)),
+                Ok(index) => actual.push((*role, index)),
                 Err(fault) => faults.push(fault),
             }
         }
         Error::refuse(faults)?;
-        Ok(FoundColumns(found))
+        Ok(FoundColumns(actual))
     }
 }
 
@@ -142,10 +142,10 @@ pub fn column_named(table: &Table, name: &str) -> Result<usize, Diagnostic> {
     ];
     let heads: Vec<String> = table.columns.iter().map(Column::head).collect();
     let all = heads.join(", ");
-    for way in ways {
+    for direction in ways {
         let of_name = table.columns.iter().enumerate();
         let of_name: Vec<usize> = of_name
-            .filter(|(_, column)| way(column))
+            .filter(|(_, column)| direction(column))
             .map(|(index, _)| index)
             .collect();
         match of_name[..] {
@@ -216,8 +216,8 @@ mod tests {
     fn a_gauge_that_the_file_has_not_is_none_of_two() {
         let heads = "Tensile strain (Strain 1);Tensile strain (Strain 2)";
         let table = Table::parse("a.csv", &format!("{heads}\n1;2\n5;6")).unwrap();
-        let told = |name: &str| column_named(&table, name).unwrap_err().message;
-        assert!(told("Tensile strain (Strain 3)").starts_with("there is no column"));
-        assert!(told("Tensile strain").contains("the file has 2 columns"));
+        let output = |name: &str| column_named(&table, name).unwrap_err().message;
+        assert!(output("Tensile strain (Strain 3)").starts_with("there is no column"));
+        assert!(output("Tensile strain").contains("the file has 2 columns"));
     }
 }

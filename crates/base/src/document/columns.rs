@@ -265,7 +265,7 @@ mod tests {
 
     #[test]
     fn names_units_titles_and_preambles_are_told_apart() {
-        for (text, found) in [
+        for (text, actual) in [
             ("x;y;u\n1;2;3\n4;5;6", expected(0, None, 1)),
             ("x;y;u\nmm;mm;mm\n1;2;3\n4;5;6", expected(0, Some(1), 2)),
             ("x;y;e\nmm;mm;1\n1;2;3\n4;5;6", expected(0, Some(1), 2)),
@@ -288,7 +288,7 @@ mod tests {
                 expected(1, Some(2), 3),
             ),
         ] {
-            assert_eq!(above(text), found, "{text}");
+            assert_eq!(above(text), actual, "{text}");
         }
         // A line of names among rows is a fault of the row that it is.
         assert_eq!(above("1;2\n3;4\nx;y").names, None);

@@ -5,12 +5,12 @@ use std::collections::BTreeMap;
 /// The remark behind each key and table of a file, by its path: `plate.length`, `support[].kind`. Indented lines with
 /// only a remark belong to the key before them. Keys that are themselves commented out count too.
 pub fn comments(text: &str) -> BTreeMap<String, String> {
-    let mut found: BTreeMap<String, String> = BTreeMap::new();
+    let mut result: BTreeMap<String, String> = BTreeMap::new();
     let (mut table, mut last) = (String::new(), None);
     for line in text.lines() {
         let remark = line.trim_start().strip_prefix('#');
         if let (true, Some(remark), Some(path)) = (line.starts_with(' '), remark, &last) {
-            let known: &mut String = found.entry(String::clone(path)).or_default();
+            let known: &mut String = result.entry(String::clone(path)).or_default();
             *known += &format!(" {}", remark.trim());
             continue;
         }
@@ -18,10 +18,10 @@ pub fn comments(text: &str) -> BTreeMap<String, String> {
         let (statement, remark) = split(statement);
         last = path(statement, &mut table);
         if let (Some(path), false) = (&last, remark.is_empty()) {
-            found.entry(path.clone()).or_insert(remark.to_owned());
+            result.entry(path.clone()).or_insert(remark.to_owned());
         }
     }
-    found
+    result
 }
 
 /// A statement and the remark behind it.
@@ -74,7 +74,7 @@ mod tests {
     fn remarks_belong_to_their_keys() {
         let text = "# A study.\ntitle = \"a # b\"  # shown above\n\n[plate]  # a rectangle\nlength = 1 # along x,\n   \
                     # between grips\n# to = 2   # a ramp\n\n[[support]]\nkind = \"clamp\" # or roller\n# [a.b] # more\n# c = 1 # c\n";
-        let found = comments(text);
+        let result = comments(text);
         for (path, remark) in [
             ("title", "shown above"),
             ("plate", "a rectangle"),
@@ -83,8 +83,8 @@ mod tests {
             ("support[].kind", "or roller"),
             ("a.b.c", "c"),
         ] {
-            assert_eq!(found[path], remark, "{found:?}");
+            assert_eq!(result[path], remark, "{result:?}");
         }
-        assert_eq!(found.len(), 7);
+        assert_eq!(result.len(), 7);
     }
 }

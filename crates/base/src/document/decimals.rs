@@ -25,10 +25,11 @@ impl Decimals {
             return Err(NotANumber::Infinite(field.to_owned()));
         }
         self.point |= field.contains('.');
-        if let Some((whole, decimals)) = field.split_once(',') {
-            let whole = whole.trim_start_matches(['+', '-']);
+        if let Some((complete, decimals)) = field.split_once(',') {
+            let complete = complete.trim_start_matches(['+', '-']);
             self.comma = true;
-            self.surely_decimal |= decimals.len() != 3 || whole.len() > 3 || whole.starts_with('0');
+            self.surely_decimal |=
+                decimals.len() != 3 || complete.len() > 3 || complete.starts_with('0');
         } else {
             self.ungrouped |= value.abs() >= 100.0;
         }

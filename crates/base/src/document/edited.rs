@@ -24,7 +24,7 @@ pub enum NewValue {
 impl NewValue {
     fn value(&self) -> Value {
         match self {
-            Self::Integer(whole) => Value::Integer(*whole),
+            Self::Integer(complete) => Value::Integer(*complete),
             Self::Float(number) => Value::Float(*number),
             Self::Flag(flag) => Value::Boolean(*flag),
             Self::Text(text) => Value::String(text.clone()),

@@ -32,7 +32,7 @@ struct Reading {
 
 /// All keys that a reader looks up, in its order; `read` reads a text and returns the keys that were looked up.
 pub fn explore(read: &dyn Fn(&str) -> Vec<Key>) -> Vec<FoundKey> {
-    let (mut found, mut readings): (Vec<Key>, Vec<Reading>) = (Vec::new(), Vec::new());
+    let (mut result, mut readings): (Vec<Key>, Vec<Reading>) = (Vec::new(), Vec::new());
     let mut open = VecDeque::from([Assignment::new()]);
     while let Some(assignment) = open.pop_front() {
         let keys = complete(read, &assignment);
@@ -45,17 +45,17 @@ pub fn explore(read: &dyn Fn(&str) -> Vec<Key>) -> Vec<FoundKey> {
             });
         }
         for key in keys {
-            let is_new = found.iter().all(|known| known.path != key.path);
+            let is_new = result.iter().all(|known| known.path != key.path);
             if let (true, Some(Takes::Choice(names))) = (is_new, key.takes.first())
                 && names.len() > 1
             {
                 open.extend(names.iter().map(|name| with(&assignment, &key.path, name)));
             }
-            note(&mut found, key);
+            note(&mut result, key);
         }
     }
-    let found = found.into_iter();
-    found
+    let result = result.into_iter();
+    result
         .map(|key| FoundKey {
             only_with: only_with(&key.path, &readings),
             key,
@@ -262,10 +262,10 @@ mod tests {
 
     #[test]
     fn every_key_is_found_with_what_it_takes_and_when() {
-        let found = explore(&read);
+        let result = explore(&read);
         let key = |path: &str| {
-            let own = found.iter().find(|own| own.key.path == path);
-            own.unwrap_or_else(|| panic!("{path}: {found:#?}"))
+            let own = result.iter().find(|own| own.key.path == path);
+            own.unwrap_or_else(|| panic!("{path}: {result:#?}"))
         };
         let takes = |path: &str| key(path).key.takes.clone();
         let length = [Takes::Quantity(Dimension::Length, Bound::Positive)];
@@ -282,6 +282,6 @@ mod tests {
         assert_eq!(only("item[].of_a"), with("a"));
         assert_eq!(only("item[].other"), with("b"));
         assert_eq!(only("item[].kind"), None);
-        assert_eq!(found.len(), 12);
+        assert_eq!(result.len(), 12);
     }
 }

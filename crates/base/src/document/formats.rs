@@ -25,15 +25,15 @@ const WITH_PARTS: [&str; 4] = [".xlsx", ".xlsm", ".npz", ".mat"];
 
 /// A file and the name of the table in it, where one is named: `tests.xlsx#uniaxial`.
 pub(super) fn file_and_part(path: &Path) -> (PathBuf, Option<String>) {
-    let whole = path.to_string_lossy();
+    let complete = path.to_string_lossy();
     let ends = |(at, _): &(usize, &str)| {
-        let file = whole[..*at].to_lowercase();
+        let file = complete[..*at].to_lowercase();
         WITH_PARTS.iter().any(|ending| file.ends_with(ending))
     };
-    match whole.match_indices('#').find(ends) {
+    match complete.match_indices('#').find(ends) {
         Some((at, _)) => (
-            PathBuf::from(&whole[..at]),
-            Some(whole[at + 1..].to_owned()),
+            PathBuf::from(&complete[..at]),
+            Some(complete[at + 1..].to_owned()),
         ),
         None => (path.to_owned(), None),
     }

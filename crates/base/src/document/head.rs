@@ -106,18 +106,18 @@ impl<'a> Head<'a> {
         named: Option<&str>,
         read: &dyn Fn(&str) -> String,
     ) -> Faulty<Option<String>> {
-        let mut said: Vec<(&str, String, Range<usize>)> = Vec::new();
+        let mut printed: Vec<(&str, String, Range<usize>)> = Vec::new();
         if let Some(named) = named {
             let position = self.table.columns_place.clone();
-            said.push(("the name of a column", named.to_owned(), position));
+            printed.push(("the name of a column", named.to_owned(), position));
         }
         if let Some((value, position)) = self.pairs.get(key) {
-            said.push(("the header", read(value), position.clone()));
+            printed.push(("the header", read(value), position.clone()));
         }
         if let Some(value) = self.given.get(key) {
-            said.push(("the command line", value.trim().to_owned(), 0..0));
+            printed.push(("the command line", value.trim().to_owned(), 0..0));
         }
-        for pair in said.windows(2) {
+        for pair in printed.windows(2) {
             let [(one, first, position), (other, second, _)] = pair else {
                 continue;
             };
@@ -128,7 +128,7 @@ impl<'a> Head<'a> {
                 return Err(self.fault(position.clone(), message, "state it once, or identically"));
             }
         }
-        Ok(said.into_iter().next().map(|(_, value, _)| value))
+        Ok(printed.into_iter().next().map(|(_, value, _)| value))
     }
 
     /// One of several names.

@@ -38,9 +38,9 @@ pub fn note(path: &Path) {
 /// Calls a function, and returns the files that this thread has read meanwhile, by their absolute paths.
 pub fn noted<T>(work: impl FnOnce() -> T) -> (T, Vec<PathBuf>) {
     let before = NOTED.replace(Some(Vec::new()));
-    let found = work();
+    let result = work();
     let read = NOTED.replace(before).unwrap_or_default();
-    (found, read)
+    (result, read)
 }
 
 /// The files that were read, by their absolute paths, in the order in which they were first read.

@@ -248,10 +248,25 @@ impl<'a> Section<'a> {
             (Some(_), None) if table => Presence::Optional,
             _ => Presence::Required,
         };
+        self.notes(
+            key,
+            takes,
+            example.map(|value| shown(value.get_ref())),
+            presence,
+        );
+    }
+
+    fn notes(
+        &self,
+        key: &'static str,
+        takes: Option<Takes>,
+        example: Option<String>,
+        presence: Presence,
+    ) {
         let key = Key {
             path: plain_path(&self.full(key)),
             takes: takes.into_iter().collect(),
-            example: example.map(|value| shown(value.get_ref())),
+            example,
             presence,
         };
         keys::note(&mut self.faults.keys.borrow_mut(), key);
@@ -271,8 +286,8 @@ impl<'a> Section<'a> {
         let required = self.required.contains(&key);
         match default.filter(|_| !required) {
             Some(default) => {
-                let said = format!("{} = {}", self.full(key), shown(default.get_ref()));
-                self.faults.defaulted(said);
+                let printed = format!("{} = {}", self.full(key), shown(default.get_ref()));
+                self.faults.defaulted(printed);
                 Some(default)
             }
             None => {

@@ -225,11 +225,11 @@ impl Table {
     ) {
         // A separator behind the last field, as some programs write, does not begin another column.
         let known = self.columns.len();
-        let beyond = record
+        let outside = record
             .iter()
             .skip(known)
             .all(|field| field.trim().is_empty());
-        let count = if known > 0 && beyond {
+        let count = if known > 0 && outside {
             record.len().min(known)
         } else {
             record.len()

@@ -40,19 +40,19 @@ impl Table {
     /// The precision of a column in each row, as written in the file; `None` where a field is not a number.
     pub fn written(&self, column: usize) -> Vec<Option<Written>> {
         let text = &self.source.text;
-        let mut found = Vec::with_capacity(self.rows.len());
+        let mut result = Vec::with_capacity(self.rows.len());
         for record in self.records(text).records().map_while(Result::ok) {
-            let Some((_, row)) = self.rows.get(found.len()) else {
+            let Some((_, row)) = self.rows.get(result.len()) else {
                 break;
             };
             let from = record.position().map_or(0, |at| at.byte() as usize);
             if line_at(text, from).start == row.start {
                 let field = record.get(column).map(unquoted);
-                found.push(field.and_then(Written::of));
+                result.push(field.and_then(Written::of));
             }
         }
-        found.resize(self.rows.len(), None);
-        found
+        result.resize(self.rows.len(), None);
+        result
     }
 }
 
@@ -62,7 +62,7 @@ mod tests {
 
     #[test]
     fn digits_are_those_of_the_file() {
-        let of = |field| Written::of(field).map(|found| (found.digits, found.decimals));
+        let of = |field| Written::of(field).map(|result| (result.digits, result.decimals));
         for (field, digits, decimals) in [
             ("1.100000", 7, 6),
             ("-0,0250", 3, 4),
@@ -83,8 +83,8 @@ mod tests {
         let text = "# test: uniaxial\n\"a\";\"b\"\n(-);(MPa)\n\n1,10;\"0,5\"\n# pause\n1,2;\n";
         let table = Table::parse("a.csv", text).unwrap();
         let decimals = |column| -> Vec<Option<i32>> {
-            let found = table.written(column).into_iter();
-            found.map(|one| one.map(|one| one.decimals)).collect()
+            let result = table.written(column).into_iter();
+            result.map(|one| one.map(|one| one.decimals)).collect()
         };
         assert_eq!(decimals(0), [Some(2), Some(1)]);
         assert_eq!(decimals(1), [Some(1), None]);

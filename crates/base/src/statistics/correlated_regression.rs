@@ -245,13 +245,13 @@ impl CorrelatedRegression<'_> {
                 more(1.0 / step),
             ];
             for near in around {
-                let Some(found) = self.tried(near) else {
+                let Some(actual) = self.tried(near) else {
                     continue;
                 };
-                if found.1.surprise < best.1.surprise {
-                    best = found;
+                if actual.1.surprise < best.1.surprise {
+                    best = actual;
                 }
-                tried.push(found);
+                tried.push(actual);
             }
             step = step.sqrt();
         }
@@ -326,23 +326,23 @@ mod tests {
                 share: 0.999,
                 length,
             };
-            let found: Vec<_> = (0..6).map(|seed| likeliest(Some(truth), seed)).collect();
+            let actual: Vec<_> = (0..6).map(|seed| likeliest(Some(truth), seed)).collect();
             let mean = |value: fn(&CorrelatedNoise) -> f64| {
-                (found.iter().map(|one| value(one).ln()).sum::<f64>() / 6.0).exp()
+                (actual.iter().map(|one| value(one).ln()).sum::<f64>() / 6.0).exp()
             };
             let (range, size) = (mean(|one| one.correlation.length), mean(|one| one.variance));
             assert!((range / length).ln().abs() < 0.4, "{length} {range}");
             assert!(size > 0.6 && size < 1.6, "{length} {size}");
-            assert!(found.iter().all(|one| one.evidence > 30.0), "{found:?}");
+            assert!(actual.iter().all(|one| one.evidence > 30.0), "{actual:?}");
         }
     }
 
     #[test]
     fn white_noise_is_white() {
         for seed in 0..12 {
-            let found = likeliest(None, seed);
-            assert!(found.evidence < 12.0, "{found:?}");
-            assert!((found.variance - 1.0).abs() < 0.25, "{found:?}");
+            let actual = likeliest(None, seed);
+            assert!(actual.evidence < 12.0, "{actual:?}");
+            assert!((actual.variance - 1.0).abs() < 0.25, "{actual:?}");
         }
     }
 }

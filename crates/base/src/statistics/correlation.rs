@@ -241,10 +241,10 @@ mod tests {
         let one = DVector::from_fn(positions.len(), |k, _| wave(k));
         let square = |values: &[f64]| values.iter().map(|x| x * x).sum::<f64>();
         let direct = one.dot(&(&exact * &one));
-        let found = square(&whitening.apply_inverse_transposed(&both));
+        let actual = square(&whitening.apply_inverse_transposed(&both));
         assert!(
-            (found / (5.0 * direct) - 1.0).abs() < 0.02,
-            "{found} {direct}"
+            (actual / (5.0 * direct) - 1.0).abs() < 0.02,
+            "{actual} {direct}"
         );
         let inverse = one.dot(&exact.cholesky().unwrap().solve(&one));
         let mut white = vec![0.0; both.len()];

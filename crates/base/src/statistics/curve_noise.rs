@@ -332,8 +332,8 @@ impl CurveNoise {
 /// Shares that have the ratios of these logarithms.
 fn shares(logarithms: impl Iterator<Item = f64>) -> Vec<f64> {
     let logarithms: Vec<f64> = logarithms.collect();
-    let whole = log_of_sum(logarithms.clone());
-    let shares = logarithms.iter().map(|one| (one - whole).exp());
+    let complete = log_of_sum(logarithms.clone());
+    let shares = logarithms.iter().map(|one| (one - complete).exp());
     shares.collect()
 }
 

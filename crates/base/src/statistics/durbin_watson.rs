@@ -94,9 +94,9 @@ mod tests {
         for _ in 0..DRAWS {
             let noise = DVector::from_fn(30, |_, _| StandardNormal.sample(&mut random));
             let left = &noise - &design * solver.solve(&noise, 1e-12).unwrap();
-            let found = DurbinWatson::new(&design, &left, &curves).unwrap();
+            let result = DurbinWatson::new(&design, &left, &curves).unwrap();
             for (count, level) in tails.iter_mut().zip([0.05, 0.5, 0.95]) {
-                *count += i32::from(found.probability < level);
+                *count += i32::from(result.probability < level);
             }
         }
         for (count, level) in tails.into_iter().zip([0.05, 0.5, 0.95]) {
@@ -113,16 +113,16 @@ mod tests {
         let solver = design.clone().svd(true, true);
         let left = &wave - &design * solver.solve(&wave, 1e-12).unwrap();
         let curve = [Curve::even((0..15).collect())];
-        let found = DurbinWatson::new(&design, &left, &curve).unwrap();
+        let result = DurbinWatson::new(&design, &left, &curve).unwrap();
         assert!(
-            found.statistic < 0.5 && found.probability < 1e-4,
-            "{found:?}"
+            result.statistic < 0.5 && result.probability < 1e-4,
+            "{result:?}"
         );
         let zigzag = DVector::from_fn(15, |i, _| [1.0, -1.0][i % 2]);
-        let found = DurbinWatson::new(&design, &zigzag, &curve).unwrap();
+        let result = DurbinWatson::new(&design, &zigzag, &curve).unwrap();
         assert!(
-            found.statistic > 3.5 && found.probability > 0.999,
-            "{found:?}"
+            result.statistic > 3.5 && result.probability > 0.999,
+            "{result:?}"
         );
     }
 }

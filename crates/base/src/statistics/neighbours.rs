@@ -39,18 +39,18 @@ pub fn nearest_before(positions: &[[f64; 2]], count: usize) -> Vec<(usize, Vec<u
 /// The nearest of a tree, those that are as far as the last one only by their numbers.
 fn around(tree: &RTree<Site>, position: [f64; 2], count: usize) -> Vec<usize> {
     const EQUAL: f64 = 1e-9;
-    let mut found: Vec<(f64, usize)> = Vec::new();
+    let mut result: Vec<(f64, usize)> = Vec::new();
     for (site, square) in tree.nearest_neighbor_iter_with_distance_2(&position) {
-        let last = found.len().checked_sub(1).map(|last| found[last].0);
-        if found.len() >= count && last.is_some_and(|last| square > last * (1.0 + EQUAL)) {
+        let last = result.len().checked_sub(1).map(|last| result[last].0);
+        if result.len() >= count && last.is_some_and(|last| square > last * (1.0 + EQUAL)) {
             break;
         }
-        found.push((square, site.data));
+        result.push((square, site.data));
     }
     let rounded = |square: f64| (square.max(f64::MIN_POSITIVE).ln() / EQUAL.sqrt()).round();
-    found.sort_by(|a, b| rounded(a.0).total_cmp(&rounded(b.0)).then(a.1.cmp(&b.1)));
-    found.truncate(count);
-    found.into_iter().map(|(_, index)| index).collect()
+    result.sort_by(|a, b| rounded(a.0).total_cmp(&rounded(b.0)).then(a.1.cmp(&b.1)));
+    result.truncate(count);
+    result.into_iter().map(|(_, index)| index).collect()
 }
 
 #[cfg(test)]
@@ -67,12 +67,12 @@ mod tests {
     #[test]
     fn neighbours_are_the_nearest_ones() {
         let positions = grid();
-        let found = nearest(&positions, 4);
+        let result = nearest(&positions, 4);
         // (4, 3) in the middle.
-        let mut middle = found[31].clone();
+        let mut middle = result[31].clone();
         middle.sort_unstable();
         assert_eq!(middle, [24, 30, 32, 38]);
-        assert_eq!(found[0][0], 7);
+        assert_eq!(result[0][0], 7);
     }
 
     #[test]

@@ -275,14 +275,14 @@ mod tests {
         for ends in [[true, false], [false, true], [true; 2]] {
             let graded = spline.graded(ends);
             assert!(sum(graded, line) < 1e-20);
-            let found = sum(graded, square);
+            let actual = sum(graded, square);
             let exact = match ends {
                 [true, true] => 4.0 / 3.0,
                 _ => 2.0 / 3.0 + 2.0,
             };
             assert!(
-                (found / exact - 1.0).abs() < 0.02,
-                "{ends:?}: {found} {exact}"
+                (actual / exact - 1.0).abs() < 0.02,
+                "{ends:?}: {actual} {exact}"
             );
         }
     }

@@ -171,7 +171,7 @@ mod tests {
 
     #[test]
     fn faults_name_the_term() {
-        for (text, told) in [
+        for (text, message) in [
             ("", "lacks a term"),
             ("2 mm +", "lacks a term"),
             ("2 mm + - 1 mm", "lacks a term"),
@@ -186,7 +186,7 @@ mod tests {
             ("2 mm * X", "the term `2 mm`"),
         ] {
             let fault = parse_linear_length(text).expect_err(text).to_string();
-            assert!(fault.contains(told), "{text}: {fault}");
+            assert!(fault.contains(message), "{text}: {fault}");
         }
     }
 }

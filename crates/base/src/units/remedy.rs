@@ -304,8 +304,8 @@ mod tests {
             ("wide", Dimension::Length, "write a length such as \"2 mm\""),
             ("3 furlong", Dimension::Length, "known units: mm, cm, m"),
         ] {
-            let told = remedy(text, dimension);
-            assert!(told.contains(expected), "{text}: {told}");
+            let message = remedy(text, dimension);
+            assert!(message.contains(expected), "{text}: {message}");
         }
     }
 

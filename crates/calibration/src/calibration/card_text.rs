@@ -154,13 +154,13 @@ fn uncertainty(fit: &Fit) -> Option<ParameterUncertainty> {
 
 /// The statements of the data's heads about a key.
 fn stated(tests: &[TestData], key: &str) -> Option<String> {
-    let mut found: Vec<&str> = Vec::new();
+    let mut result: Vec<&str> = Vec::new();
     for value in tests.iter().filter_map(|test| test.head.get(key)) {
-        if !found.contains(&&**value) {
-            found.push(value);
+        if !result.contains(&&**value) {
+            result.push(value);
         }
     }
-    Some(found.join("; ")).filter(|text| !text.is_empty())
+    Some(result.join("; ")).filter(|text| !text.is_empty())
 }
 
 fn put(text: &mut String, key: &str, value: impl Display) {

@@ -79,6 +79,9 @@ pub fn minimise(
     if !begin.is_finite() {
         return None;
     }
+    if bounds.iter().all(|[low, high]| low == high) {
+        return Some(start.to_vec());
+    }
     let parameter = |[low, high]: &[f64; 2]| MPPar {
         fixed: low == high,
         limited_low: low.is_finite(),
@@ -106,9 +109,9 @@ pub fn minimise(
         },
         refused: 1e3 * (begin / model.count() as f64).sqrt().max(1.0),
     };
-    let mut found = start.to_vec();
-    problem.mpfit(&mut found).ok()?;
-    (sum_of_squares(model, &found) <= begin).then_some(found)
+    let mut result = start.to_vec();
+    problem.mpfit(&mut result).ok()?;
+    (sum_of_squares(model, &result) <= begin).then_some(result)
 }
 
 /// Improves `start` within `bounds` until it is a minimum, or for so many turns; `None` where the method fails from there.
@@ -247,6 +250,9 @@ pub fn jacobian(
 
 /// The coefficients of columns that come nearest to a target; `None` where a column is not finite.
 pub fn linear(columns: &DMatrix<f64>, target: &DVector<f64>) -> Option<DVector<f64>> {
+    if columns.ncols() == 0 {
+        return Some(DVector::zeros(0));
+    }
     if !columns.iter().all(|entry| entry.is_finite()) {
         return None;
     }
@@ -258,11 +264,11 @@ pub fn linear(columns: &DMatrix<f64>, target: &DVector<f64>) -> Option<DVector<f
     for (mut column, scale) in scaled.column_iter_mut().zip(&scales) {
         column /= *scale;
     }
-    let mut found = scaled.svd(true, true).solve(target, 1e-13).ok()?;
-    for (value, scale) in found.iter_mut().zip(&scales) {
+    let mut result = scaled.svd(true, true).solve(target, 1e-13).ok()?;
+    for (value, scale) in result.iter_mut().zip(&scales) {
         *value /= scale;
     }
-    Some(found)
+    Some(result)
 }
 
 #[cfg(test)]
@@ -287,8 +293,8 @@ mod tests {
     #[test]
     fn a_step_to_where_the_model_has_no_value_is_refused() {
         let free = [[f64::NEG_INFINITY, f64::INFINITY]];
-        let found = minimise(&Logarithm, &[5.0], &free, Precision::Full).unwrap();
-        assert!((found[0] / 0.01 - 1.0).abs() < 1e-6, "{found:?}");
+        let result = minimise(&Logarithm, &[5.0], &free, Precision::Full).unwrap();
+        assert!((result[0] / 0.01 - 1.0).abs() < 1e-6, "{result:?}");
         assert!(minimise(&Logarithm, &[-1.0], &free, Precision::Full).is_none());
     }
 }

@@ -123,8 +123,8 @@ fn check_cycles(tests: &[TestData]) -> Result<(), Error> {
             most = most.max(strain(one));
             most - strain(one)
         });
-        let fall = after.fold(0.0, f64::max);
-        fall > 0.1 * most
+        let decrease = after.fold(0.0, f64::max);
+        decrease > 0.1 * most
     };
     if tests.iter().any(falls) {
         return Ok(());

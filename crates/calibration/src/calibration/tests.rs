@@ -37,11 +37,11 @@ fn values(fit: &Fit) -> Vec<f64> {
 }
 
 /// Half a unit of the last digit given.
-fn agree(law: &str, found: &[f64], expected: &[(f64, f64)]) {
-    for (found, (expected, last_digit)) in found.iter().zip(expected) {
+fn agree(law: &str, actual: &[f64], expected: &[(f64, f64)]) {
+    for (actual, (expected, last_digit)) in actual.iter().zip(expected) {
         assert!(
-            (found - expected).abs() <= 0.5 * last_digit,
-            "{law}: {found} is not {expected}"
+            (actual - expected).abs() <= 0.5 * last_digit,
+            "{law}: {actual} is not {expected}"
         );
     }
 }
@@ -172,12 +172,12 @@ fn all_laws_are_ranked_and_fibres_need_two_directions() {
 fn the_parameters_of_aligned_fibres_are_found_from_two_directions() {
     let law = Law::named("holzapfel-gasser-ogden").unwrap();
     let truth = [0.02, 0.03, 0.8, 0.1, 0.5];
-    let (made, _) = law.with_values(&truth, StressMeasure::Nominal, StrainMeasure::Nominal);
+    let (built, _) = law.with_values(&truth, StressMeasure::Nominal, StrainMeasure::Nominal);
     let file = |direction: usize| {
         let unit = [[1.0, 0.0], [0.0, 1.0]][direction - 1];
         let row = |i: i32| {
             let x = f64::from(i) / 40.0;
-            format!("{},{}\n", 1.0 + x, made.tension(unit, x).nominal_stress)
+            format!("{},{}\n", 1.0 + x, built.tension(unit, x).nominal_stress)
         };
         let rows: String = (1..=40).map(row).collect();
         let head = format!("# test: uniaxial; direction: {direction}");
@@ -186,7 +186,7 @@ fn the_parameters_of_aligned_fibres_are_found_from_two_directions() {
     };
     let row = |i: i32| {
         let x = f64::from(i) / 60.0;
-        let [first, second] = made.biaxial([x, x]);
+        let [first, second] = built.biaxial([x, x]);
         format!("{},{first},{second}\n", 1.0 + x)
     };
     let rows: String = (1..=40).map(row).collect();
@@ -196,8 +196,8 @@ fn the_parameters_of_aligned_fibres_are_found_from_two_directions() {
     let both = TestData::parse("both.csv", &text, &Statements::new()).unwrap();
     let tests = [file(1), file(2), both];
     let fit = fitted(law.name, &tests);
-    for (found, expected) in values(&fit).iter().zip(truth) {
-        assert!((found / expected - 1.0).abs() < 1e-4, "{:?}", values(&fit));
+    for (actual, expected) in values(&fit).iter().zip(truth) {
+        assert!((actual / expected - 1.0).abs() < 1e-4, "{:?}", values(&fit));
     }
 }
 
@@ -221,8 +221,11 @@ fn bounds_weights_and_few_points_are_respected() {
     assert!(relative.largest_relative_error_percent < absolute.largest_relative_error_percent);
     assert!(relative.rmse > absolute.rmse);
     // The floor of the relative residuals is said, and holds.
-    let told = Weighting::Relative.describe();
-    assert!(told.contains("1 % of the test's largest stress"), "{told}");
+    let message = Weighting::Relative.describe();
+    assert!(
+        message.contains("1 % of the test's largest stress"),
+        "{message}"
+    );
     let small = Observation {
         stress: 1e-6 * tests[0].largest_stress,
         ..tests[0].observations[0]
@@ -263,8 +266,8 @@ fn the_deviation_is_normalised_by_the_larger_mean() {
             ..FitSettings::default()
         };
         let law = Law::named("neo-hooke").unwrap();
-        let found = fit(law, &tests, &settings).unwrap().quality.nmad_percent;
-        assert!((found - 50.0).abs() < 1e-6, "{c10}: {found}");
+        let actual = fit(law, &tests, &settings).unwrap().quality.nmad_percent;
+        assert!((actual - 50.0).abs() < 1e-6, "{c10}: {actual}");
     }
 }
 
@@ -275,9 +278,9 @@ fn the_card_of_a_measured_curve_is_the_curve() {
     let text = card_text(&fit, &tests, &Provenance::default());
     let card = Card::parse("table", "table.toml", &text).unwrap();
     for one in &tests[0].observations {
-        let found = tests[0].stress_of(&*card.law, one);
+        let actual = tests[0].stress_of(&*card.law, one);
         assert!(
-            (found - one.stress).abs() <= 1e-10 * one.stress.max(1e-6),
+            (actual - one.stress).abs() <= 1e-10 * one.stress.max(1e-6),
             "{one:?}"
         );
     }

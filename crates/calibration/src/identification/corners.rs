@@ -29,17 +29,17 @@ fn at_stride(motion: &[f64], stride: usize) -> Vec<usize> {
     };
     let difference = |i: usize| motion[i] - 2.0 * motion[i + stride] + motion[i + 2 * stride];
     let sizes: Vec<f64> = (0..count).map(|i| difference(i).abs()).collect();
-    let mut found: Vec<usize> = Vec::new();
+    let mut result: Vec<usize> = Vec::new();
     for (i, size) in sizes.iter().enumerate() {
         let around = i.saturating_sub(AROUND * stride)..(i + AROUND * stride + 1).min(count);
-        let is_first = found
+        let is_first = result
             .last()
             .is_none_or(|last| i + stride - last > 4 * stride);
         if is_first && *size > CLEARLY * median(sizes[around].iter().copied()) && *size > 0.0 {
-            found.push(i + stride);
+            result.push(i + stride);
         }
     }
-    found
+    result
 }
 
 #[cfg(test)]

@@ -22,7 +22,7 @@ const POINTS: usize = 25;
 /// 1 or its rate: with them, springs of all lengths represent one material. Otherwise K in N/mm and D in N·s/mm are
 /// written over the extension in mm or its rate, which no study accepts. A function is `constant`, a `polynomial`, or
 /// a `table`, between whose points cubics keep the shape.
-pub fn law_text(found: &Identification, recording: &Recording, file: &str) -> String {
+pub fn law_text(result: &Identification, recording: &Recording, file: &str) -> String {
     let head = "# f = m ẍ + D(·) ẋ + K(·) x, identified by `gelbench identify` from";
     let mut text = format!("{head} {file}.\n");
     let specimen = recording.length.zip(recording.area);
@@ -45,8 +45,8 @@ pub fn law_text(found: &Identification, recording: &Recording, file: &str) -> St
         "extension in mm"
     };
     let _ = write!(text, "\n[mass_spring.stiffness] # over {of}\n");
-    text += &written(&found.stiffness, units[0]).text();
-    let (key, of) = match (found.settings.argument, specimen) {
+    text += &written(&result.stiffness, units[0]).text();
+    let (key, of) = match (result.settings.argument, specimen) {
         (Argument::Extension, _) => ("stretch", of),
         (Argument::Rate, Some(_)) => ("stretch rate", "its rate in 1/s"),
         (Argument::Rate, None) => ("stretch rate", "its rate in mm/s"),
@@ -56,7 +56,7 @@ pub fn law_text(found: &Identification, recording: &Recording, file: &str) -> St
         "\n[mass_spring.damping] # over {of}\nof = {}\n",
         quoted(key)
     );
-    text + &written(&found.damping, units[1]).text()
+    text + &written(&result.damping, units[1]).text()
 }
 
 /// A function to be written to a file.

@@ -83,19 +83,19 @@ impl NormalEquations {
     ) -> Option<PenalisedFit> {
         /// Most changes of the set of differences with the wrong sign; more mean a cycle.
         const MOST: usize = 40;
-        let mut found = self.solve(from, from, functions, exponents)?;
+        let mut result = self.solve(from, from, functions, exponents)?;
         for _ in 0..MOST {
             if functions.iter().all(|basis| basis.shape == Shape::Free) {
                 break;
             }
-            let next = self.solve(from, &found.coefficients, functions, exponents)?;
-            let moved = (&next.coefficients - &found.coefficients).amax();
-            found = next;
-            if moved <= 1e-9 * found.coefficients.amax() {
+            let next = self.solve(from, &result.coefficients, functions, exponents)?;
+            let moved = (&next.coefficients - &result.coefficients).amax();
+            result = next;
+            if moved <= 1e-9 * result.coefficients.amax() {
                 break;
             }
         }
-        Some(found)
+        Some(result)
     }
 
     /// A minimum with the shapes enforced where the coefficients `shaped` violate them.
@@ -154,11 +154,11 @@ impl NormalEquations {
     ) -> Exponents {
         const SWEEPS: usize = 3;
         let score = |exponents: Exponents| -> f64 {
-            let Some(found) = self.minimum(from, functions, exponents) else {
+            let Some(result) = self.minimum(from, functions, exponents) else {
                 return f64::INFINITY;
             };
-            let used = others + DEARNESS * found.degrees.iter().sum::<f64>();
-            found.sum / (1.0 - used / observations).powi(2)
+            let used = others + DEARNESS * result.degrees.iter().sum::<f64>();
+            result.sum / (1.0 - used / observations).powi(2)
         };
         let mut best = (score([0.0; 2]), [0.0; 2]);
         for _ in 0..SWEEPS {

@@ -171,8 +171,8 @@ impl Reader<'_> {
         self.faults.push(self.table.fault(position, message, hint));
     }
 
-    fn take<T: Default>(&mut self, found: Faulty<T>) -> T {
-        found.unwrap_or_else(|fault| {
+    fn take<T: Default>(&mut self, result: Faulty<T>) -> T {
+        result.unwrap_or_else(|fault| {
             self.faults.push(*fault);
             T::default()
         })
@@ -260,40 +260,40 @@ mod tests {
 
     #[test]
     fn all_faults_of_a_recording_are_told_with_place_and_remedy() {
-        let told = read(&format!(
+        let output = read(&format!(
             "# mass: 5 cm\ntime [mm],force\n{}",
             "1,2\n0.5,3\n".repeat(20)
         ));
-        let told = told.unwrap_err().to_string();
+        let output = output.unwrap_err().to_string();
         for part in [
             "a.csv:2: the column `time` has the unit `mm`, which measures length",
             "a.csv:2: there is no column of the motion (name one `extension [mm]`",
             "the column `force` has no unit",
             "a.csv:1: the mass \"5 cm\" has the unit `cm`",
         ] {
-            assert!(told.contains(part), "{part}: {told}");
+            assert!(output.contains(part), "{part}: {output}");
         }
-        let told = |text: &str| read(text).unwrap_err().to_string();
+        let output = |text: &str| read(text).unwrap_err().to_string();
         let head = "time [s],extension [mm],force [N]\n";
-        assert!(told(&format!("{head}{}", rows(20))).contains("20 instants are too few"));
+        assert!(output(&format!("{head}{}", rows(20))).contains("20 instants are too few"));
         assert!(
-            told(&format!("{head}1,2,3\n1,2,4\n"))
+            output(&format!("{head}1,2,3\n1,2,4\n"))
                 .contains("a.csv:3: time 1 s does not come after 1 s")
         );
         assert!(
-            told(&format!("time [s],stretch,force [N]\n{}", rows(40)))
+            output(&format!("time [s],stretch,force [N]\n{}", rows(40)))
                 .contains("the length is not stated")
         );
         assert!(
-            told(&format!("{head}{}x,1,2\n", rows(40)))
+            output(&format!("{head}{}x,1,2\n", rows(40)))
                 .contains("column `time`: \"x\" is not a number")
         );
         let given = Statements::from([("length".to_owned(), "5 mm".to_owned())]);
         let table = Table::parse("a.csv", &format!("# length: 4 mm\n{head}{}", rows(40))).unwrap();
-        let told = Recording::of_table(&table, &given).unwrap_err().to_string();
+        let output = Recording::of_table(&table, &given).unwrap_err().to_string();
         assert!(
-            told.contains("4 mm according to the header and 5 mm according to the command line"),
-            "{told}"
+            output.contains("4 mm according to the header and 5 mm according to the command line"),
+            "{output}"
         );
     }
 }

@@ -148,11 +148,11 @@ pub fn smooth(times: &[f64], signal: &[f64], degree: usize) -> Option<SignalSpli
         }
         intervals += 1 + intervals / 8;
     }
-    let (_, mut found) = best?;
+    let (_, mut actual) = best?;
     // Without noise any number of parts would do better with more.
-    found.coarse = found.intervals + found.intervals / 8 + 1 > most
-        && found.noise > RESOLUTION * largest(signal);
-    Some(found)
+    actual.coarse = actual.intervals + actual.intervals / 8 + 1 > most
+        && actual.noise > RESOLUTION * largest(signal);
+    Some(actual)
 }
 
 /// The parts of the motion that both signals ask for.
@@ -184,11 +184,11 @@ mod tests {
             .iter()
             .map(|t| (3.0 * t + 0.2 * t * t).sin() + 0.05 * draw(&mut random))
             .collect();
-        let found = smooth(&times, &signal, 5).unwrap();
-        assert!((found.noise / 0.05 - 1.0).abs() < 0.08, "{found:?}");
+        let actual = smooth(&times, &signal, 5).unwrap();
+        assert!((actual.noise / 0.05 - 1.0).abs() < 0.08, "{actual:?}");
         assert!(
-            (6..60).contains(&found.intervals) && !found.coarse,
-            "{found:?}"
+            (6..60).contains(&actual.intervals) && !actual.coarse,
+            "{actual:?}"
         );
     }
 

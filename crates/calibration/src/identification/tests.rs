@@ -24,7 +24,7 @@ fn known_functions_lie_within_their_bands_in_nine_of_ten_trials() {
             seed: *seed,
             ..Sample::default()
         };
-        let found = identify(
+        let actual = identify(
             &sample.recording(),
             IdentificationSettings::default(),
             &|_| (),
@@ -35,8 +35,8 @@ fn known_functions_lie_within_their_bands_in_nine_of_ten_trials() {
             (low..=high).contains(&truth)
         };
         PLACES.iter().all(|x| {
-            within(&found.stiffness, *x, Sample::stiffness(*x))
-                && within(&found.damping, *x, Sample::damping(*x))
+            within(&actual.stiffness, *x, Sample::stiffness(*x))
+                && within(&actual.damping, *x, Sample::damping(*x))
         })
     });
     let good = good.count();
@@ -46,13 +46,13 @@ fn known_functions_lie_within_their_bands_in_nine_of_ten_trials() {
 #[test]
 fn without_noise_the_functions_are_found_to_the_accuracy_of_their_splines() {
     let exact = Sample::default().exact();
-    let found = identify(&exact, IdentificationSettings::default(), &|_| ()).unwrap();
+    let actual = identify(&exact, IdentificationSettings::default(), &|_| ()).unwrap();
     for x in PLACES {
-        let [k, d] = [&found.stiffness, &found.damping].map(|function| function.at(x).value);
+        let [k, d] = [&actual.stiffness, &actual.damping].map(|function| function.at(x).value);
         assert!((k / Sample::stiffness(x) - 1.0).abs() < 5e-4, "{x}: {k}");
         assert!((d / Sample::damping(x) - 1.0).abs() < 5e-3, "{x}: {d}");
     }
-    assert!(found.verdict.is_sound(), "{:?}", found.verdict);
+    assert!(actual.verdict.is_sound(), "{:?}", actual.verdict);
 }
 
 /// A massless spring and dashpot that a machine moves: f = K x + D ẋ.
@@ -73,18 +73,18 @@ fn machine(stiffness: impl Fn(f64) -> f64, damping: impl Fn(f64) -> f64) -> Reco
 #[test]
 fn constants_and_polynomials_come_back_with_their_coefficients() {
     let recording = machine(|x| 0.2 + 0.01 * x, |_| 0.05);
-    let found = identify(
+    let actual = identify(
         &recording,
         settings([Form::Polynomial(1), Form::Constant]),
         &|_| (),
     )
     .unwrap();
-    let [k, d] = [&found.stiffness, &found.damping].map(Function::powers);
+    let [k, d] = [&actual.stiffness, &actual.damping].map(Function::powers);
     for (estimate, truth) in [(k[0], 0.2), (k[1], 0.01), (d[0], 0.05)] {
         assert!((estimate.value / truth - 1.0).abs() < 1e-5, "{estimate:?}");
         assert!(estimate.standard_error < 1e-4 * truth);
     }
-    let text = law_text(&found, &recording, "a.csv");
+    let text = law_text(&actual, &recording, "a.csv");
     assert!(
         text.contains("coefficients = [\"0.2 N/mm\", \"0.01 N/mm\"]"),
         "{text}"
@@ -98,7 +98,7 @@ fn constants_and_polynomials_come_back_with_their_coefficients() {
         area: Some(10.0),
         ..recording
     };
-    let text = law_text(&found, &specimen, "a.csv");
+    let text = law_text(&actual, &specimen, "a.csv");
     assert!(
         text.contains("coefficients = [\"1.0 MPa\", \"2.5 MPa\"]"),
         "{text}"
@@ -109,16 +109,16 @@ fn constants_and_polynomials_come_back_with_their_coefficients() {
 fn a_dashpot_may_depend_on_the_rate() {
     let damping = |v: f64| 0.05 / (1.0 + (v / 10.0).powi(2));
     let recording = machine(|_| 0.3, damping);
-    let found = IdentificationSettings {
+    let actual = IdentificationSettings {
         argument: Argument::Rate,
         ..settings([Form::Constant, Form::SPLINE])
     };
-    let found = identify(&recording, found, &|_| ()).unwrap();
+    let actual = identify(&recording, actual, &|_| ()).unwrap();
     for v in [-10.0, -5.0, 3.0, 9.0] {
-        let d = found.damping.at(v).value;
+        let d = actual.damping.at(v).value;
         assert!((d / damping(v) - 1.0).abs() < 5e-3, "{v}: {d}");
     }
-    let text = law_text(&found, &recording, "a.csv");
+    let text = law_text(&actual, &recording, "a.csv");
     assert!(
         text.contains("of = \"stretch rate\"\nkind = \"table\"\nat = ["),
         "{text}"
@@ -133,11 +133,11 @@ fn a_shape_is_kept_against_the_data() {
             shapes: [Shape::Free, shape],
             ..IdentificationSettings::default()
         };
-        let found = identify(&recording, wanted, &|_| ()).unwrap();
-        let positions = found.damping.positions(200);
+        let actual = identify(&recording, wanted, &|_| ()).unwrap();
+        let positions = actual.damping.positions(200);
         let values: Vec<f64> = positions
             .iter()
-            .map(|x| found.damping.at(*x).value)
+            .map(|x| actual.damping.at(*x).value)
             .collect();
         let size = values.iter().fold(0.0, |most: f64, d| most.max(d.abs()));
         let rises = values.windows(2).map(|pair| (pair[1] - pair[0]).max(0.0));
@@ -149,10 +149,10 @@ fn a_shape_is_kept_against_the_data() {
         shapes: [Shape::Increasing; 2],
         ..settings([Form::Constant, Form::SPLINE])
     };
-    let told = identify(&recording, wanted, &|_| ())
+    let message = identify(&recording, wanted, &|_| ())
         .unwrap_err()
         .to_string();
-    assert!(told.contains("only splines"), "{told}");
+    assert!(message.contains("only splines"), "{message}");
 }
 
 #[test]
@@ -162,10 +162,10 @@ fn what_does_not_fit_or_is_not_determined_is_told() {
         mass: 3e-4,
         ..sample.recording()
     };
-    let found = identify(&wrong, IdentificationSettings::default(), &|_| ()).unwrap();
-    let reasons = found.verdict.reasons.join("; ");
+    let actual = identify(&wrong, IdentificationSettings::default(), &|_| ()).unwrap();
+    let reasons = actual.verdict.reasons.join("; ");
     assert!(
-        !found.is_explained() && reasons.contains("times the noise"),
+        !actual.is_explained() && reasons.contains("times the noise"),
         "{reasons}"
     );
     let right = identify(
@@ -185,14 +185,15 @@ fn what_does_not_fit_or_is_not_determined_is_told() {
         *x = 1.0 + 0.01 * i as f64;
         ramp.force[i] = 0.2 * *x + 0.05;
     }
-    let told = identify(&ramp, IdentificationSettings::default(), &|_| ())
+    let message = identify(&ramp, IdentificationSettings::default(), &|_| ())
         .map(|_| ())
         .unwrap_err();
-    assert_eq!(told.exit_code(), 2);
+    assert_eq!(message.exit_code(), 2);
     assert!(
-        told.to_string()
+        message
+            .to_string()
             .contains("does not determine K(·) and D(·)"),
-        "{told}"
+        "{message}"
     );
 }
 
@@ -225,10 +226,10 @@ fn a_recording_of_two_thirds_of_the_instants_has_the_functions_of_the_whole_one(
             force: of(&whole.force),
             ..whole.clone()
         };
-        let found = identify(&part, IdentificationSettings::default(), &|_| ()).unwrap();
-        assert!(found.misfit < 1.2, "{seed}: {}", found.misfit);
+        let actual = identify(&part, IdentificationSettings::default(), &|_| ()).unwrap();
+        assert!(actual.misfit < 1.2, "{seed}: {}", actual.misfit);
         for x in PLACES {
-            let k = found.stiffness.at(x).value;
+            let k = actual.stiffness.at(x).value;
             assert!(
                 (k / Sample::stiffness(x) - 1.0).abs() < 0.1,
                 "{seed} {x}: {k}"

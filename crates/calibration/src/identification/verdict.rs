@@ -44,9 +44,9 @@ fn is_steady(motion: &FittedMotion) -> bool {
 }
 
 /// Functions that are surely negative somewhere, which none of a passive body is.
-fn negative(found: &Identification) -> Vec<String> {
+fn negative(result: &Identification) -> Vec<String> {
     let mut doubts = Vec::new();
-    for (name, _, function) in found.functions() {
+    for (name, _, function) in result.functions() {
         let is_negative = function
             .positions(PLACES)
             .into_iter()
@@ -66,14 +66,14 @@ fn negative(found: &Identification) -> Vec<String> {
 }
 
 /// What a recording does not say of a body, and no fault of it.
-pub fn notes(found: &Identification, recording: &Recording) -> Vec<String> {
+pub fn notes(result: &Identification, recording: &Recording) -> Vec<String> {
     let is_undetermined = |function: &Function| {
         function
             .positions(PLACES)
             .into_iter()
             .all(|x| function.at(x).interval[0] <= 0.0 && function.at(x).interval[1] >= 0.0)
     };
-    let functions = found.functions().into_iter();
+    let functions = result.functions().into_iter();
     let undetermined = functions.filter(|(_, _, function)| is_undetermined(function));
     let undetermined = undetermined
         .map(|(name, ..)| format!("the recording does not distinguish {name}(·) from zero"));
@@ -94,9 +94,9 @@ pub struct Evidence<'a> {
 
 impl Evidence<'_> {
     /// The verdict on the recording of some functions.
-    pub fn verdict(&self, found: &Identification) -> RecordingVerdict {
-        let (reason, doubt) = match self.excess(found) {
-            Some(excess) if found.misfit > MOST_MISFIT => (Some(excess), None),
+    pub fn verdict(&self, result: &Identification) -> RecordingVerdict {
+        let (reason, doubt) = match self.excess(result) {
+            Some(excess) if result.misfit > MOST_MISFIT => (Some(excess), None),
             excess => (None, excess),
         };
         let reasons: Vec<String> = description(self.suspects)
@@ -104,7 +104,7 @@ impl Evidence<'_> {
             .chain(reason)
             .collect();
         let doubts = if reasons.is_empty() {
-            doubt.into_iter().chain(self.doubts(found)).collect()
+            doubt.into_iter().chain(self.doubts(result)).collect()
         } else {
             self.corners.map(of_corners).into_iter().collect()
         };
@@ -120,21 +120,21 @@ impl Evidence<'_> {
     }
 
     /// Residuals that are larger than the noise, and large enough to be measured.
-    fn excess(&self, found: &Identification) -> Option<String> {
-        let errors = (found.misfit - 1.0) / (2.0 / found.freedom).sqrt();
-        let (measured, fitted) = (self.recording, &found.motion);
+    fn excess(&self, result: &Identification) -> Option<String> {
+        let errors = (result.misfit - 1.0) / (2.0 / result.freedom).sqrt();
+        let (measured, fitted) = (self.recording, &result.motion);
         let is_measurable = exceeds_resolution(&measured.extension, &fitted.extension)
             || exceeds_resolution(&measured.force, &fitted.force);
         (errors > 4.0 && is_measurable).then(|| {
             format!(
                 "the residuals of force and motion are {:.2} times the noise: the mass, the length at rest or the forms are wrong, the noise is \
                  correlated, or there is more than one spring and one dashpot",
-                found.misfit.sqrt()
+                result.misfit.sqrt()
             )
         })
     }
 
-    fn doubts(&self, found: &Identification) -> Vec<String> {
+    fn doubts(&self, result: &Identification) -> Vec<String> {
         let (extension, force) = self.signals;
         let mut doubts: Vec<String> = self.corners.map(of_corners).into_iter().collect();
         if extension.coarse || force.coarse {
@@ -143,7 +143,7 @@ impl Evidence<'_> {
             );
         }
         let by_splines = |form: &Form| matches!(form, Form::Spline(_));
-        if found.settings.forms.iter().any(by_splines) && is_steady(&found.motion) {
+        if result.settings.forms.iter().any(by_splines) && is_steady(&result.motion) {
             doubts.push(
                 "the motion is a steady vibration, which passes every extension at one speed: it says little of D(·) between its ends, and with \
                  noise of 5 % bands include the true functions in about half of such recordings; drive the spring with several frequencies, or \
@@ -151,7 +151,7 @@ impl Evidence<'_> {
                     .to_owned(),
             );
         }
-        doubts.extend(negative(found));
+        doubts.extend(negative(result));
         doubts
     }
 }

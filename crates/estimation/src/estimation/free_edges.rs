@@ -16,8 +16,8 @@ const LEVEL: f64 = 0.01;
 /// Steps of a trial: a free edge that does not contradict the data takes few.
 const TRIAL_STEPS: usize = 20;
 
-/// Searches with the edges as they are, then with those to be tested freed one after the other, the longest first. Where many edges that
-/// follow the markers lead to no solution, the search begins with all of them free, and releases those that the data contradict.
+/// Searches, and decides which of the edges without a stated condition are free. Where the physics is weighted, both begin in exact
+/// equilibrium: forces on the interior stand for the way there, and for edges that carry nothing.
 ///
 /// # Errors
 /// As the search with the edges as they are.
@@ -25,31 +25,42 @@ pub fn search<'a>(
     task: &Task<'a>,
     edges: Vec<Edge>,
 ) -> Result<(NearestField<'a>, Vec<Edge>), Error> {
+    if task.knowledge.physics == Physics::Exact {
+        return decided(task, edges);
+    }
+    let knowledge = Knowledge {
+        physics: Physics::Exact,
+        ..task.knowledge.clone()
+    };
+    let exact = Task {
+        knowledge: &knowledge,
+        ..task.clone()
+    };
+    let Ok((field, edges)) = decided(&exact, edges.clone()) else {
+        return decided(task, edges);
+    };
+    match nearest_from(task, &edges, MOST_STEPS, &field) {
+        Ok(nearest) => Ok((nearest, edges)),
+        Err(Error::Input(_)) => Err(Error::input(
+            "the data do not determine forces on the interior beside the motion of the edges",
+            "state more about the edges (free, rigid, known), or let equilibrium hold exactly (--physics exact)",
+        )),
+        Err(fault) => Err(fault),
+    }
+}
+
+/// Searches with the edges as they are, then with those to be tested freed one after the other, the longest first. Where many edges that
+/// follow the markers lead to no solution, the search begins with all of them free, and releases those that the data contradict.
+fn decided<'a>(task: &Task<'a>, edges: Vec<Edge>) -> Result<(NearestField<'a>, Vec<Edge>), Error> {
     match nearest(task, &edges, MOST_STEPS) {
-        Ok(nearest_field) if nearest_field.ends_at_gross_errors() => Ok((nearest_field, edges)),
-        Ok(nearest_field) => from_loaded(task, nearest_field, edges),
+        Ok(field) if field.ends_at_gross_errors() => Ok((field, edges)),
+        Ok(field) => from_loaded(task, field, edges),
         Err(fault) => from_free(task, edges).map_err(|_| fault),
     }
 }
 
-/// Where the physics is weighted, the search begins at the field in exact equilibrium: forces on the interior that are estimated far from
-/// the data stand for the way there.
 fn nearest<'a>(task: &Task<'a>, edges: &[Edge], most: usize) -> Result<NearestField<'a>, Error> {
-    let equations = Equations::new(task, edges)?;
-    if task.knowledge.physics == Physics::Weighted {
-        let knowledge = Knowledge {
-            physics: Physics::Exact,
-            ..task.knowledge.clone()
-        };
-        let exact = Task {
-            knowledge: &knowledge,
-            ..task.clone()
-        };
-        if let Ok(nearest_field) = Equations::new(&exact, edges)?.run(most) {
-            return equations.run_near(&nearest_field, most);
-        }
-    }
-    equations.run(most)
+    Equations::new(task, edges)?.run(most)
 }
 
 /// The same from a field with other edges, and anew where that leads to none.

@@ -43,6 +43,17 @@ impl Mesh {
         (self.outside_of_cell(nearest) <= most).then_some(nearest)
     }
 
+    /// The cell of [`Self::locate_within`], and behind it the others that contain the point, where it lies on their common edge.
+    pub fn cells_at(&self, point: [f64; 2], most: f64) -> Vec<(usize, [f64; 2])> {
+        let Some(first) = self.locate_within(point, most) else {
+            return Vec::new();
+        };
+        let near = self.buckets().around(point).iter();
+        let others = near.filter(|cell| **cell != first.0);
+        let others = others.filter_map(|cell| Some((*cell, self.within(*cell, point)?)));
+        std::iter::once(first).chain(others).collect()
+    }
+
     fn outside_of_cell(&self, (cell, local): (usize, [f64; 2])) -> f64 {
         let shape = self.shape(cell);
         let size = if shape.is_triangle() { 1.0 } else { 2.0 };

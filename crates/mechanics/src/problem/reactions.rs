@@ -15,7 +15,7 @@ pub struct GroupState {
     /// that the group shares with another one, forces of supports of the other group are excluded; where supports of both groups
     /// hold the node, the part of each group follows from its tractions beside the corner, and the rest is shared.
     pub force: [f64; 2],
-    /// Moment of that force about `place` in N·mm, counter-clockwise; in a linear theory about the same point of the body at rest.
+    /// Moment of that force about `position` in N·mm, counter-clockwise; in a linear theory about the same point of the body at rest.
     pub moment: f64,
     /// Mean deformed place in mm: over the length of its edges at rest, else over its cells, lines or nodes.
     pub position: [f64; 2],

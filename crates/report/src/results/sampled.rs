@@ -1,25 +1,26 @@
 //! Fields of a sheet at single points, as ParaView interpolates the arrays at the nodes.
 
+use std::borrow::Cow;
+
 use super::nodal_sheet::NodalSheet;
 use super::{Deformed, SheetField};
 use crate::mesh::{Mesh, NodalField};
 use crate::problem::SheetLaws;
 
-/// A cell and natural coordinates in it; `None` of a point that is not on the sheet.
-pub type Position = Option<(usize, [f64; 2])>;
+/// The cells that contain a point, with its natural coordinates in each; none of a point that is not on the sheet.
+pub type Position = Vec<(usize, [f64; 2])>;
 
 /// Where points at rest are in a mesh; a point may lie so far outside of its nearest cell, in sizes of the cell.
 pub fn positions(mesh: &Mesh, points: &[[f64; 2]], margin: f64) -> Vec<Position> {
     let points = points.iter();
-    points
-        .map(|point| mesh.locate_within(*point, margin))
-        .collect()
+    points.map(|point| mesh.cells_at(*point, margin)).collect()
 }
 
 impl Deformed<'_> {
     /// All fields, in the order of [`SheetField::NAMES`], at positions in its mesh.
     ///
-    /// Values at the nodes are means over the adjacent cells, and are interpolated by the shape functions.
+    /// Values at the nodes are means over the adjacent cells, and are interpolated by the shape functions. Where materials meet, the value is
+    /// the mean of their sides.
     pub fn sampled(
         &self,
         laws: SheetLaws,
@@ -30,14 +31,29 @@ impl Deformed<'_> {
         }
         let sheet = NodalSheet::new(laws, self.mesh, &self.fields, self.viscous);
         let displacement: Vec<[f64; 2]> = sheet.displacement.vectors().collect();
-        let sample = |position: &Position| {
-            let (cell, local) = (*position)?;
+        let in_cell = |(cell, local): (usize, [f64; 2])| {
             let weights = sheet.mesh.shape(cell).values(local);
             let nodes = || sheet.mesh.cell(cell).iter().zip(&weights);
-            Some(SheetField::NAMES.map(|(_, field)| {
+            SheetField::NAMES.map(|(_, field)| {
                 let value = |node: usize| field.value(&sheet.states[node], displacement[node]);
-                nodes().map(|(node, weight)| weight * value(*node)).sum()
-            }))
+                let parts = nodes().map(|(node, weight)| weight * value(*node));
+                parts.sum::<f64>()
+            })
+        };
+        // Fields of a sheet that is not cut are the same in all cells at a point.
+        let sides = if matches!(sheet.mesh, Cow::Owned(_)) {
+            usize::MAX
+        } else {
+            1
+        };
+        let sample = |position: &Position| {
+            let cells = &position[..position.len().min(sides)];
+            let mut values = cells.iter().map(|cell| in_cell(*cell));
+            let first = values.next()?;
+            let sum = values.fold(first, |sum, side| {
+                std::array::from_fn(|field| sum[field] + side[field])
+            });
+            Some(sum.map(|sum| sum / cells.len() as f64))
         };
         positions.iter().map(sample).collect()
     }

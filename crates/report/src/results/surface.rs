@@ -206,7 +206,7 @@ fn divided_triangle(across: u32) -> (Vec<[f64; 2]>, Vec<[u32; 3]>) {
     (rows.collect(), triangles)
 }
 
-/// Lines along edges with their nodes at `places`, curved ones in short pieces.
+/// Lines along edges with their nodes at `positions`, curved ones in short pieces.
 pub fn edge_lines(edges: &[Vec<usize>], positions: &[[f64; 2]]) -> Vec<Vec<[f64; 2]>> {
     let line = |edge: &Vec<usize>| match edge[..] {
         [from, to, middle] => {

@@ -102,7 +102,7 @@ pub fn recognised(root: &Section<'_>, file: &str) -> Option<(&'static str, Strin
             "add `kind = \"specimen\"` as its first line".to_owned(),
         ));
     }
-    any(&["start", "grip", "time", "probe"]).then(|| {
+    any(&["start", "grip", "time"]).then(|| {
         (
             "is a study of a motion without its kind",
             "add `kind = \"motion\"` as its first line".to_owned(),

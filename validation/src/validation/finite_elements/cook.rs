@@ -50,14 +50,14 @@ fn compute(coarsest: usize, progress: Progress) -> Result<Outcome, Error> {
     let mut outcome = Outcome::default();
     let mut rows = Vec::new();
     for shear in SHEARS {
-        let mut found = Vec::new();
+        let mut result = Vec::new();
         for (name, shape) in CellShape::NAMES {
             progress.tell(name);
-            found.push(Deflection::new(name, shape, coarsest, shear.traction)?);
+            result.push(Deflection::new(name, shape, coarsest, shear.traction)?);
         }
-        found.sort_by_key(|deflection| !deflection.is_reference());
-        outcome.checks.extend(shear.checks(&found));
-        rows.extend(found.iter().map(Deflection::row));
+        result.sort_by_key(|deflection| !deflection.is_reference());
+        outcome.checks.extend(shear.checks(&result));
+        rows.extend(result.iter().map(Deflection::row));
     }
     let deflections = [1, 2, 4].map(|finer| {
         let cells = coarsest * finer;
@@ -118,9 +118,9 @@ impl Deflection {
 
 impl Shear {
     /// The first deflection is what the others are compared with.
-    fn checks(&self, found: &[Deflection]) -> Vec<Check> {
-        let reference = found[0].limit.extrapolated;
-        let others = found[1..].iter().map(|other| {
+    fn checks(&self, result: &[Deflection]) -> Vec<Check> {
+        let reference = result[0].limit.extrapolated;
+        let others = result[1..].iter().map(|other| {
             let (element, traction) = (other.element, self.traction);
             let what = format!("{element}: extrapolated deflection under {traction} MPa");
             let source = "Q2, extrapolated from three meshes";
@@ -167,9 +167,9 @@ mod tests {
             let reference = tip(CellShape::Quad9);
             assert!(reference > 40.0, "{reference}");
             for (name, shape) in CellShape::NAMES {
-                let found = tip(shape);
-                let off = (found / reference - 1.0).abs();
-                assert!(off < tolerance, "{name}: {found} instead of {reference}");
+                let result = tip(shape);
+                let off = (result / reference - 1.0).abs();
+                assert!(off < tolerance, "{name}: {result} instead of {reference}");
             }
         }
     }

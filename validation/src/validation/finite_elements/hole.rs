@@ -46,10 +46,10 @@ fn compute(cells: usize, progress: Progress) -> Result<Outcome, Error> {
         progress.tell(&format!("diameter/width {ratio}"));
         let mesh = quarter(ratio * HALF, cells, CellShape::Quad9);
         let what = format!("stress concentration at diameter/width {ratio}");
-        let found = check(what, "–", concentration(&mesh, ratio * HALF)?);
+        let actual = check(what, "–", concentration(&mesh, ratio * HALF)?);
         outcome
             .checks
-            .push(found.equal(expected, 1.0, "Kirsch 1898, Howland 1930"));
+            .push(actual.equal(expected, 1.0, "Kirsch 1898, Howland 1930"));
     }
     let mesh = quarter(0.5 * HALF, 6, CellShape::Quad9);
     outcome.figures.push(mesh_figure(

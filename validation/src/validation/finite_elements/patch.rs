@@ -45,13 +45,13 @@ fn element_checks(
     let mut checks = vec![patch.at_most(1e-12, "linear field")];
     for (mode_name, mode) in Mode::ALL {
         let what = format!("{mode_name} tension to λ = {stretch}, field and stress");
-        let found = error(&what, homogeneous(shape, cells, mode, stretch)?);
-        checks.push(found.at_most(1e-12, "closed form"));
+        let actual = error(&what, homogeneous(shape, cells, mode, stretch)?);
+        checks.push(actual.at_most(1e-12, "closed form"));
     }
     let shear = stretch - 1.0;
     let what = format!("simple shear γ = {shear}, force");
-    let found = error(&what, simple_shear(shape, cells, shear)?);
-    checks.push(found.at_most(1e-12, "closed form"));
+    let actual = error(&what, simple_shear(shape, cells, shear)?);
+    checks.push(actual.at_most(1e-12, "closed form"));
     let turn = error("rigid rotation by 90°, field", turn(shape, cells)?);
     checks.push(turn.at_most(1e-12, "rigid rotation"));
     let [residual, tangent] = derivatives(shape, cells);
@@ -104,9 +104,9 @@ fn homogeneous(
     let state = solve(&model, mode.name(), 4)?;
     let field = largest_error(&mesh, &state.displacement, |[px, py]| [x * px, across * py]);
     let force = model.reaction(&state, "right")[0];
-    let found = force / (problem.thickness * SIZE[1]);
+    let actual = force / (problem.thickness * SIZE[1]);
     let exact = mode.nominal_stress(&*problem.law, x);
-    Ok(field.max((found / exact - 1.0).abs()))
+    Ok(field.max((actual / exact - 1.0).abs()))
 }
 
 /// Error of the shear force on the upper side when the boundary is sheared.
@@ -163,7 +163,7 @@ fn derivatives(shape: CellShape, cells: [usize; 2]) -> [f64; 2] {
     let energy = sheet().finite_elements(&mesh);
     let bent = |[x, y]: &[f64; 2]| [0.2 * x + 0.002 * x * y, -0.1 * y + 0.001 * x * x];
     let u: Vec<f64> = mesh.nodes.iter().flat_map(bent).collect();
-    let way = |i: usize| (1.0 + i as f64 * 0.7).sin();
-    let direction: Vec<f64> = (0..u.len()).map(way).collect();
+    let route = |i: usize| (1.0 + i as f64 * 0.7).sin();
+    let direction: Vec<f64> = (0..u.len()).map(route).collect();
     derivative_errors(&energy, &u, &direction)
 }

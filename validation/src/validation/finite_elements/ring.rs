@@ -47,13 +47,13 @@ fn compute(cells: usize, progress: Progress) -> Result<Outcome, Error> {
     for (name, shape) in CellShape::NAMES {
         progress.tell(name);
         let mesh = quarter(cells, shape);
-        let found = inflate(&mesh, pressure, 1)?[0];
+        let actual = inflate(&mesh, pressure, 1)?[0];
         let what = format!("{name}: inner displacement over Lamé's");
         let tolerance = if shape.degree() == 1 { 0.5 } else { 0.01 };
         let source = "Timoshenko and Goodier § 28";
         outcome
             .checks
-            .push(check(what, "–", found / exact).equal(1.0, tolerance, source));
+            .push(check(what, "–", actual / exact).equal(1.0, tolerance, source));
     }
     let mesh = quarter(cells, CellShape::Quad9);
     let [grown, round] = inflate(&mesh, LARGE_PRESSURE * modulus, 6)?;
@@ -92,21 +92,21 @@ fn beside_one_dimension(mesh: &Mesh, stretch: f64) -> Result<Vec<Check>, Error> 
             computed,
         )
     };
-    let beside = |what, unit, expected, computed| {
+    let adjacent = |what, unit, expected, computed| {
         let source = "one-dimensional solution by Runge-Kutta";
         check(what, unit, computed).equal(expected, 0.01, source)
     };
     let [across, along] = solved.forces.map(|force| -force);
     Ok(vec![
-        beside(
+        adjacent(
             "radius of the bore",
             "mm",
             INNER * stretch,
             radius("inside"),
         ),
-        beside("outer radius", "mm", OUTER + outside, radius("outside")),
-        beside("force on the vertical line of symmetry", "N", force, across),
-        beside(
+        adjacent("outer radius", "mm", OUTER + outside, radius("outside")),
+        adjacent("force on the vertical line of symmetry", "N", force, across),
+        adjacent(
             "force on the horizontal line of symmetry",
             "N",
             force,

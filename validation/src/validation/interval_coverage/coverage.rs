@@ -181,14 +181,14 @@ impl Settings {
             laws: Arc::clone(&subject.truth.law).into(),
             thickness,
         };
-        let found = match wrong {
+        let actual = match wrong {
             Wrong::Nothing => {
-                let found = estimate(&specimen, &markers, &unknown_grips())?;
+                let actual = estimate(&specimen, &markers, &unknown_grips())?;
                 let law = self.law.as_ref().map(|law| law.scaled(1.1));
                 let fitted = estimate(&specimen, &markers, &with_force(law.as_ref()))?;
                 let truth = self.law.as_ref().map(|law| law.start()[0]);
                 let radius = self.data.radius;
-                return Ok(CoverageTrial::new(subject, radius, &found, &fitted, truth));
+                return Ok(CoverageTrial::new(subject, radius, &actual, &fitted, truth));
             }
             Wrong::Law => estimate(&specimen, &markers, &with_force(self.wrong_law.as_ref()))?,
             Wrong::Thickness => {
@@ -201,7 +201,7 @@ impl Settings {
             }
             Wrong::Edge => self.with_wrong_edge(specimen, markers)?,
         };
-        Ok(CoverageTrial::verdict(&found))
+        Ok(CoverageTrial::verdict(&actual))
     }
 
     /// The plate as if it ended at a rigid grip before its end: it is narrower there than at its grips, so that this line across it has

@@ -18,8 +18,11 @@ pub fn free_edges(subject: &Subject, seeds: u64) -> Result<Check, Error> {
     let length = high[0] - low[0];
     let right = |seed: u64| -> Result<bool, Error> {
         let data = subject.data(Disturbance::noise(MIDDLE), seed);
-        let found = subject.estimate(&data, &knowledge)?;
-        let tested = found.edges.iter().filter(|edge| edge.probability.is_some());
+        let actual = subject.estimate(&data, &knowledge)?;
+        let tested = actual
+            .edges
+            .iter()
+            .filter(|edge| edge.probability.is_some());
         let mut right = tested.map(|edge| {
             let is_long = edge.length > 0.9 * length;
             is_long == (edge.condition == EdgeCondition::Free)
@@ -60,11 +63,11 @@ pub fn modulus(
             error_percent: 100.0 * (modulus.value / truth - 1.0).abs(),
         })
     };
-    let found: Result<Vec<_>, Error> = (0..seeds).into_par_iter().map(estimate).collect();
-    let found = found?;
+    let actual: Result<Vec<_>, Error> = (0..seeds).into_par_iter().map(estimate).collect();
+    let actual = actual?;
     let (name, key) = (subject.name, law.parameters()[0].key);
-    let coverage = share(found.iter().map(|found| found.is_covered));
-    let error = mean(found.iter().map(|found| found.error_percent));
+    let coverage = share(actual.iter().map(|actual| actual.is_covered));
+    let error = mean(actual.iter().map(|actual| actual.error_percent));
     Ok([
         check(
             format!("{name}: seeds with {key} in its 95 % interval"),

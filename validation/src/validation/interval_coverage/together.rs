@@ -179,18 +179,18 @@ fn judged(frames: &[JointFrame], settings: &Settings) -> Result<Trial, Error> {
         };
         estimate_jointly(frames, law, &joint, &|_| ())
     };
-    let found = find(&right.scaled(1.2), true)?;
+    let actual = find(&right.scaled(1.2), true)?;
     let other = find(wrong, false)?;
-    let error = |found: &JointEstimate| 100.0 * found.prediction_error().unwrap_or(f64::INFINITY);
-    let parameters = found.parameters.iter().zip(&truth);
+    let error = |actual: &JointEstimate| 100.0 * actual.prediction_error().unwrap_or(f64::INFINITY);
+    let parameters = actual.parameters.iter().zip(&truth);
     Ok(Trial {
         held: parameters
-            .map(|(found, truth)| (found.interval[0]..=found.interval[1]).contains(truth))
+            .map(|(actual, truth)| (actual.interval[0]..=actual.interval[1]).contains(truth))
             .collect(),
-        predicted: [error(&found), error(&other)],
-        is_right_first: error(&found) < error(&other)
-            && found.information_criterion() < other.information_criterion(),
-        common: found.common,
+        predicted: [error(&actual), error(&other)],
+        is_right_first: error(&actual) < error(&other)
+            && actual.information_criterion() < other.information_criterion(),
+        common: actual.common,
     })
 }
 

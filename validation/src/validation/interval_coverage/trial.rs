@@ -180,8 +180,8 @@ impl<'a> Square<'a> {
             let row = markers
                 .iter()
                 .filter(|marker| (marker.position[other] - position[other]).abs() < 1e-6);
-            let beyond = row.filter(|marker| marker.position[axis] > position[axis] + 1e-6);
-            beyond.min_by(|a, b| a.position[axis].total_cmp(&b.position[axis]))
+            let farther = row.filter(|marker| marker.position[axis] > position[axis] + 1e-6);
+            farther.min_by(|a, b| a.position[axis].total_cmp(&b.position[axis]))
         };
         let (right, above) = (next(0, first.position)?, next(1, first.position)?);
         let last = next(1, right.position)?;

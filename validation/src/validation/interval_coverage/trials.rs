@@ -37,8 +37,8 @@ impl Trials {
         };
         let trial = |seed: u64| {
             let data = subject.data(disturbance, seed);
-            let found = subject.estimate(&data, &knowledge)?;
-            Ok(Trial::new(&subject.truth, &subject.mesh, &data, &found))
+            let actual = subject.estimate(&data, &knowledge)?;
+            Ok(Trial::new(&subject.truth, &subject.mesh, &data, &actual))
         };
         let all: Result<Vec<Trial>, Error> = (0..seeds).into_par_iter().map(trial).collect();
         Ok(Self {

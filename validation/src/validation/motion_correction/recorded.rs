@@ -69,10 +69,10 @@ impl Recording {
         progress.tell("seeds");
         let one = |seed: u64| -> Result<Deviation, Error> {
             let data = self.disturbed(&exact, &bodies.scheme, seed);
-            let found = equation.smooth(&data, &guess, self.instants, SMOOTHING);
+            let actual = equation.smooth(&data, &guess, self.instants, SMOOTHING);
             Ok(Deviation {
                 before: percent(&data, &exact),
-                after: percent(&found.map_err(fault)?, &exact),
+                after: percent(&actual.map_err(fault)?, &exact),
             })
         };
         let seeds = (1..=self.seeds).into_par_iter();

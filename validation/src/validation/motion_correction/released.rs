@@ -89,19 +89,19 @@ impl Release {
             max_iterations: 20,
             size: length.max(width),
         };
-        let found = bodies.equation(step)?;
-        let found = found.correct(&springs, &bodies.scheme.motion.start, windows, &|_| ());
-        let found = found.map_err(|end| fault(end.fault))?;
+        let actual = bodies.equation(step)?;
+        let actual = actual.correct(&springs, &bodies.scheme.motion.start, windows, &|_| ());
+        let actual = actual.map_err(|end| fault(end.fault))?;
         let compared = |fields: &[Vec<f64>]| fields.iter().step_by(STRIDE).cloned().collect();
         let work = format!(
             "{} windows of up to {} steps, {} Newton steps, {} factorisations",
-            found.windows, self.window, found.iterations, found.factorisations
+            actual.windows, self.window, actual.iterations, actual.factorisations
         );
         let motions = Motions {
             exact,
             coarse,
             springs: compared(&springs),
-            corrected: compared(&found.displacement),
+            corrected: compared(&actual.displacement),
         };
         Ok((motions, work))
     }

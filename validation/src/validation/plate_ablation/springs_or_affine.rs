@@ -65,9 +65,9 @@ pub fn compare(fields: &Fields, outcome: &mut Outcome) -> Result<(), Error> {
         .extend([Block::paragraph(text), table(head, rows)]);
     let [springs, affine] = all.displacements();
     let far = displacement_percent(&fields.lattice.mesh, affine, springs);
-    let beside = "field corrected from springs compared with field corrected from affine";
+    let adjacent = "field corrected from springs compared with field corrected from affine";
     outcome.checks.extend([
-        check(format!("everything known: {beside}"), "%", far)
+        check(format!("everything known: {adjacent}"), "%", far)
             .at_most(1e-6, "ū does not affect the field"),
         check(
             "everything known: multipliers of the two fields compared",
@@ -76,7 +76,7 @@ pub fn compare(fields: &Fields, outcome: &mut Outcome) -> Result<(), Error> {
         )
         .at_least(1.0, "ū determines the multipliers"),
         check(
-            format!("grips alone known: {beside}"),
+            format!("grips alone known: {adjacent}"),
             "%",
             grips.fields_percent(fields),
         )

@@ -40,7 +40,7 @@ impl Longitudinal {
         motion.supports = vec![MovingSupport::fixed(supports)];
         let held = motion.held(0.0);
         let rest = vec![0.0; held.len()];
-        let modes = slowest(&motion, &held, &rest, 6).map_err(|found| fault("rest", found))?;
+        let modes = slowest(&motion, &held, &rest, 6).map_err(|actual| fault("rest", actual))?;
         Ok(Self {
             mode: strongest(modes, &motion.mass, 0).expect("six modes"),
             length: equivalent_length(model, &held)?,
@@ -72,7 +72,7 @@ fn equivalent_length(model: &Model, held: &[bool]) -> Result<f64, Error> {
             .tangent
             .respond(model.energy, &rest, &forces, &describe)
     });
-    let field = field.map_err(|found| fault("rest", found))?;
+    let field = field.map_err(|actual| fault("rest", actual))?;
     // The displacement that the load works on.
     let work: f64 = field.iter().zip(&forces).map(|(u, f)| u * f).sum();
     let mean = work / (traction * SIZE[1] * THICKNESS);
@@ -153,8 +153,8 @@ pub fn compare(cells: &[usize], outcome: &mut Outcome) -> Result<(), Error> {
     let what =
         "clamped plate: frequency from its motion over frequency by inverse iteration, same mesh";
     let expected = plates[0].clamped.mode.frequency;
-    let found = from_motion(plates[0].along, expected)?;
-    let from_motion = check(what, "–", found / expected);
+    let actual = from_motion(plates[0].along, expected)?;
+    let from_motion = check(what, "–", actual / expected);
     outcome
         .checks
         .push(from_motion.equal(1.0, 0.01, "inverse iteration"));

@@ -62,8 +62,8 @@ fn arrays_of_numpy_and_matlab_are_tables() {
         );
     }
     let table = read("columns.npz");
-    let said = Statements::new();
-    let missing = Head::new(&table, &[], &said)
+    let printed = Statements::new();
+    let missing = Head::new(&table, &[], &printed)
         .unwrap()
         .missing("stress unit", "MPa");
     // No line can be written at the top of an archive.
@@ -168,8 +168,8 @@ fn sheets_and_arrays_are_named_behind_the_file() {
         ),
         ("a#1.csv", "a#1.csv", None),
     ] {
-        let found = file_and_part(Path::new(path));
-        assert_eq!(found, (PathBuf::from(file), part.map(str::to_owned)));
+        let result = file_and_part(Path::new(path));
+        assert_eq!(result, (PathBuf::from(file), part.map(str::to_owned)));
     }
     assert!(is_table_path(Path::new("a.xlsx#Sheet.1")) && is_table_path(Path::new("a.OUT")));
     assert!(!is_table_path(Path::new("a.vtu")));

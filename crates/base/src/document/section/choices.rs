@@ -1,8 +1,10 @@
-//! Names that stand for choices.
+//! Choices: names that stand for something, and truth values with a default of their own.
+
+use toml::de::DeValue;
 
 use super::Section;
 use super::plain::text;
-use crate::document::{Takes, quoted};
+use crate::document::{Presence, Takes, quoted};
 use crate::error::nearest;
 
 impl Section<'_> {
@@ -28,10 +30,31 @@ impl Section<'_> {
             seen.push(name.clone());
             is_new
         });
-        let found = names.iter().map(|name| self.named(key, name, choices));
+        let result = names.iter().map(|name| self.named(key, name, choices));
         // All of them are looked at, for every fault is told.
-        let found: Vec<Option<T>> = found.collect();
-        found.into_iter().collect()
+        let result: Vec<Option<T>> = result.collect();
+        result.into_iter().collect()
+    }
+
+    /// A truth value that is `usual` where the file does not say it, whatever the built-in study has as an example.
+    pub fn flag_or(&self, usual: bool, key: &'static str) -> bool {
+        self.notes(
+            key,
+            Some(Takes::Flag),
+            Some(usual.to_string()),
+            Presence::Default,
+        );
+        let Some(value) = self.written(key) else {
+            self.faults
+                .defaulted(format!("{} = {usual}", self.full(key)));
+            return usual;
+        };
+        let read = |value: &DeValue| match value {
+            DeValue::Boolean(flag) => Some(*flag),
+            _ => None,
+        };
+        self.converted(key, value, "true or false", read)
+            .unwrap_or(usual)
     }
 
     /// What a name stands for; `None` where it is unknown, which is recorded as a fault.

@@ -133,7 +133,7 @@ fn dates(xml: &str) -> Result<BTreeSet<usize>, Unconvertible> {
         .chain(50..=58)
         .map(|id| id.to_string())
         .collect();
-    let (mut found, mut count, mut within) = (BTreeSet::new(), 0, false);
+    let (mut result, mut count, mut within) = (BTreeSet::new(), 0, false);
     walk(xml, |met| {
         match met {
             Met::Start(tag) => match tag.local_name().as_ref() {
@@ -144,7 +144,7 @@ fn dates(xml: &str) -> Result<BTreeSet<usize>, Unconvertible> {
                 "cellXfs" => within = true,
                 "xf" if within => {
                     let format = attribute(tag, "numFmtId").unwrap_or_default();
-                    found.extend(of_dates.contains(&format).then_some(count));
+                    result.extend(of_dates.contains(&format).then_some(count));
                     count += 1;
                 }
                 _ => {}
@@ -154,7 +154,7 @@ fn dates(xml: &str) -> Result<BTreeSet<usize>, Unconvertible> {
         }
         Ok(())
     })?;
-    Ok(found)
+    Ok(result)
 }
 
 /// Whether a format has letters of dates or times outside of quotes, colours and escapes.

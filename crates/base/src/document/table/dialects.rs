@@ -122,10 +122,10 @@ fn the_same_numbers_are_read_from_every_dialect() {
             }
         }
     }
-    let told: Vec<&String> = failures.iter().step_by(1 + failures.len() / 40).collect();
+    let message: Vec<&String> = failures.iter().step_by(1 + failures.len() / 40).collect();
     assert!(
         failures.is_empty(),
-        "{} of {count}: {told:#?}",
+        "{} of {count}: {message:#?}",
         failures.len()
     );
 }

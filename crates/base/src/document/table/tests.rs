@@ -49,8 +49,8 @@ fn bad_tables_are_refused_with_line_and_reason() {
         ),
         ("a\tb\n1,050\t2\n950\t3\n", "group thousands"),
     ] {
-        let found = refusal(text);
-        assert!(found.contains(reason), "{text:?}: {found}");
+        let actual = refusal(text);
+        assert!(actual.contains(reason), "{text:?}: {actual}");
     }
 }
 
@@ -70,11 +70,11 @@ fn fields_that_are_no_numbers_are_told_by_their_column() {
         ("a;b\n1,0;1.000,5\n", 2, "is not a number"),
     ] {
         let table = Table::parse("a.csv", text).unwrap();
-        let found = table.check_numbers([1], "").unwrap_err().to_string();
+        let actual = table.check_numbers([1], "").unwrap_err().to_string();
         let position = format!("a.csv:{line}: column `b`: ");
         assert!(
-            found.contains(&position) && found.contains(reason),
-            "{text:?}: {found}"
+            actual.contains(&position) && actual.contains(reason),
+            "{text:?}: {actual}"
         );
         assert!(table.check_numbers([0], "").is_ok(), "{text:?}");
     }

@@ -70,7 +70,7 @@ fn one_noise_has_the_covariance_and_the_likelihood_of_full_matrices() {
         orders: &orders,
         sizes: &alike(residual.len()),
     };
-    let found = residuals.noise().unwrap();
+    let actual = residuals.noise().unwrap();
     let projector = (design.tr_mul(&design)).try_inverse().unwrap() * design.transpose();
     let exact = |correlation: Correlation| {
         let r = DMatrix::from_fn(12, 12, |i, j| match i.abs_diff(j) {
@@ -88,12 +88,12 @@ fn one_noise_has_the_covariance_and_the_likelihood_of_full_matrices() {
             likelihood,
         )
     };
-    let white = found
+    let white = actual
         .parts
         .iter()
         .find(|part| part.correlation.share == 0.0);
     let white = white.unwrap();
-    for part in &found.parts {
+    for part in &actual.parts {
         let (covariance, likelihood) = exact(part.correlation);
         let difference = (&part.covariance - &covariance).amax();
         assert!(difference < 1e-9 * covariance.amax(), "{part:?}");
@@ -105,7 +105,7 @@ fn one_noise_has_the_covariance_and_the_likelihood_of_full_matrices() {
             "{part:?}"
         );
     }
-    assert!(found.parts.len() > 5);
+    assert!(actual.parts.len() > 5);
 }
 
 #[test]

@@ -252,12 +252,12 @@ pub fn strain_ratio(head: &Head) -> Faulty<f64> {
 
 /// The unit of a column, or the one that is stated for its kind where the column has none that is known.
 pub fn unit(head: &Head, column: &Column, kind: Kind) -> Option<String> {
-    let said = || head.setting(&format!("{} unit", kind.name()), None);
+    let printed = || head.setting(&format!("{} unit", kind.name()), None);
     let own = column.unit.clone();
     let is_known =
         |own: &&String| units::is_known(own) || units::factor(own, Dimension::Ratio).is_ok();
     let known = own.as_ref().filter(is_known).cloned();
-    known.or_else(|| said().ok().flatten()).or(own)
+    known.or_else(|| printed().ok().flatten()).or(own)
 }
 
 /// A dimension of the specimen without the rounding of its arithmetic.
@@ -268,7 +268,7 @@ fn rounded(value: f64) -> f64 {
 impl TableReading {
     /// What some roles say, and the rows that are fitted.
     pub fn of(head: &Head, roles: &[Role], [first, last]: [usize; 2]) -> Self {
-        let mut found = Self::default();
+        let mut result = Self::default();
         for kind in [
             Kind::Strain,
             Kind::Stress,
@@ -284,24 +284,24 @@ impl TableReading {
                     format!("`{}`", column.written)
                 };
                 match kind {
-                    Kind::Other => found.unread.push(name),
-                    _ => found
+                    Kind::Other => result.unread.push(name),
+                    _ => result
                         .columns
                         .push(ColumnReading::of(head, roles, (column, name), role)),
                 }
             }
         }
         let line = |row: usize| head.table.source.line(head.table.rows[row].1.start);
-        found.lines = [line(first), line(last)];
-        found
+        result.lines = [line(first), line(last)];
+        result
     }
 }
 
 impl ColumnReading {
     fn of(head: &Head, roles: &[Role], (column, name): (&Column, String), role: &Role) -> Self {
         let key = format!("{} measure", role.kind.name());
-        let said = || head.setting(&key, None).ok().flatten();
-        let measure = role.measure.map(str::to_owned).or_else(said);
+        let printed = || head.setting(&key, None).ok().flatten();
+        let measure = role.measure.map(str::to_owned).or_else(printed);
         let measure = measure.unwrap_or_default();
         let divided_by = match &*measure {
             DISPLACEMENT => length(head, roles, role.axis())

@@ -291,19 +291,19 @@ mod tests {
                 .iter()
                 .map(|x| sign * x)
                 .collect::<Vec<_>>();
-            let found = Branches::of(&cycles);
-            assert_eq!(found.loading.len(), 3);
-            assert_eq!(found.rows(Cycle::First), Some(0..41));
-            assert_eq!(found.rows(Cycle::Last), Some(160..201));
-            assert_eq!(found.rows(Cycle::Number(2)), Some(80..121));
-            assert_eq!(found.rows(Cycle::Number(4)), None);
-            assert_eq!(found.rows(Cycle::All), Some(0..201));
-            assert_eq!(found.ends[2], sign * 2.0);
+            let result = Branches::of(&cycles);
+            assert_eq!(result.loading.len(), 3);
+            assert_eq!(result.rows(Cycle::First), Some(0..41));
+            assert_eq!(result.rows(Cycle::Last), Some(160..201));
+            assert_eq!(result.rows(Cycle::Number(2)), Some(80..121));
+            assert_eq!(result.rows(Cycle::Number(4)), None);
+            assert_eq!(result.rows(Cycle::All), Some(0..201));
+            assert_eq!(result.ends[2], sign * 2.0);
         }
         let hold = path(&[0.0, 1.0, 1.0, 1.0], 30);
-        let found = Branches::of(&hold);
-        assert!(!found.is_one_pull);
-        assert_eq!(found.rows(Cycle::Last), Some(0..31));
+        let result = Branches::of(&hold);
+        assert!(!result.is_one_pull);
+        assert_eq!(result.rows(Cycle::Last), Some(0..31));
         let pull = path(&[0.0, 1.0], 50);
         assert_eq!(Branches::of(&pull).rows(Cycle::Last), Some(0..51));
     }
@@ -318,9 +318,9 @@ mod tests {
             let of =
                 |rows: Range<usize>| Branches::of_part(&strains[rows.clone()], &stresses[rows]);
             for first in [41, 50, 70] {
-                let found = of(first..150);
-                assert_eq!(found.loading.len(), 1, "{first}");
-                assert_eq!(found.loading[0], 80 - first..121 - first, "{first}");
+                let result = of(first..150);
+                assert_eq!(result.loading.len(), 1, "{first}");
+                assert_eq!(result.loading[0], 80 - first..121 - first, "{first}");
             }
             assert_eq!(of(20..150).loading, [0..21, 60..101]);
             assert!(of(45..75).only_unloads && !of(85..115).only_unloads);

@@ -40,10 +40,10 @@ pub fn gross_rows(strains: &[f64], stresses: &[f64]) -> Vec<usize> {
     let is_off = |own: usize, next: [usize; 4]| {
         let [low, high] = extremes(next.map(|row| stresses[row]));
         let jump = (stresses[own] - stresses[next[0]]).abs();
-        let way = (strains[own] - strains[next[0]]).abs();
+        let direction = (strains[own] - strains[next[0]]).abs();
         let [shortest, longest] = extremes(next.map(|row| strains[row]));
         let off = jump > (SHARE_AT_ENDS * range).max(USUAL * (high - low)).max(usual);
-        off && way <= longest - shortest
+        off && direction <= longest - shortest
     };
     if is_off(0, [1, 2, 3, 4]) {
         gross.insert(0, 0);
@@ -69,10 +69,10 @@ pub fn torn_rows(strains: &[f64], stresses: &[f64]) -> Vec<usize> {
     let at_rest = median(stresses.iter().copied().take(TEARING_ROWS));
     let size = |stress: &f64| (stress - at_rest).abs();
     let most = stresses.iter().map(size).fold(0.0, f64::max);
-    let Some(whole) = stresses.iter().rposition(|y| size(y) >= WHOLE * most) else {
+    let Some(complete) = stresses.iter().rposition(|y| size(y) >= WHOLE * most) else {
         return Vec::new();
     };
-    let first = whole + 1;
+    let first = complete + 1;
     let torn = stresses[first..]
         .iter()
         .position(|y| size(y) <= TORN * most);
@@ -80,12 +80,12 @@ pub fn torn_rows(strains: &[f64], stresses: &[f64]) -> Vec<usize> {
         return Vec::new();
     };
     let [low, high] = extremes(strains.iter().copied());
-    let way = (strains[whole] - strains[0]).signum();
-    let further = |row: usize| way * (strains[row] - strains[whole]) / (high - low);
+    let direction = (strains[complete] - strains[0]).signum();
+    let further = |row: usize| direction * (strains[row] - strains[complete]) / (high - low);
     let stands = (first..strains.len()).all(|row| further(row) >= -STANDS);
-    let tears = torn - whole <= TEARING_ROWS || further(torn) > GOES_ON;
+    let tears = torn - complete <= TEARING_ROWS || further(torn) > GOES_ON;
     let is_last = stresses[torn..].iter().all(|y| size(y) <= TORN * most);
-    if stands && tears && is_last && way != 0.0 {
+    if stands && tears && is_last && direction != 0.0 {
         (first..stresses.len()).collect()
     } else {
         Vec::new()
@@ -135,21 +135,22 @@ mod tests {
         for sign in [1.0, -1.0] {
             let (pull, _) = record(1);
             let stress = |x: &f64| 0.3 + sign * (3.0 * x).exp_m1();
-            let whole: Vec<f64> = pull.iter().map(stress).collect();
-            assert!(torn_rows(&pull, &whole).is_empty());
+            let complete: Vec<f64> = pull.iter().map(stress).collect();
+            assert!(torn_rows(&pull, &complete).is_empty());
             let behind: Vec<f64> = (60..75).map(|row| f64::from(row) / 60.0).collect();
             let strains = [pull.clone(), behind.clone()].concat();
             let stands = [pull.clone(), vec![pull[59]; 15]].concat();
-            let torn = [whole.clone(), vec![0.3 + 0.01 * sign; 15]].concat();
+            let torn = [complete.clone(), vec![0.3 + 0.01 * sign; 15]].concat();
             let all: Vec<usize> = (60..75).collect();
             assert_eq!(torn_rows(&strains, &torn), all);
             assert_eq!(torn_rows(&stands, &torn), all);
             // Back to rest within a few rows.
             let back = [pull.clone(), vec![0.0; 15]].concat();
             assert!(torn_rows(&back, &torn).is_empty());
-            let decay = (0..90).map(|row| 0.3 + (whole[59] - 0.3) * (-0.1 * f64::from(row)).exp());
+            let decay =
+                (0..90).map(|row| 0.3 + (complete[59] - 0.3) * (-0.1 * f64::from(row)).exp());
             let held = [pull.clone(), vec![pull[59]; 90]].concat();
-            let relaxing = [whole.clone(), decay.collect()].concat();
+            let relaxing = [complete.clone(), decay.collect()].concat();
             assert!(torn_rows(&held, &relaxing).is_empty());
         }
     }

@@ -144,7 +144,7 @@ mod tests {
 
     #[test]
     fn a_stress_at_rest_is_told_where_it_is_more_than_scatter() {
-        let told = |head: &str, rest: f64, noise: f64| {
+        let output = |head: &str, rest: f64, noise: f64| {
             let mut text = format!("# test: uniaxial\n{head}\n");
             for row in 0..30 {
                 let strain = 0.01 * f64::from(row);
@@ -156,8 +156,8 @@ mod tests {
             warnings.any(|warning| warning.message.contains("the strain is zero"))
         };
         let table = "nominal_strain [-],nominal_stress [MPa]";
-        assert!(told(table, 0.01, 0.0) && told(table, 0.01, 1e-4));
-        assert!(!told(table, 0.0, 1e-4) && !told(table, 1e-4, 0.0));
-        assert!(!told(table, 0.002, 2e-3));
+        assert!(output(table, 0.01, 0.0) && output(table, 0.01, 1e-4));
+        assert!(!output(table, 0.0, 1e-4) && !output(table, 1e-4, 0.0));
+        assert!(!output(table, 0.002, 2e-3));
     }
 }

@@ -184,10 +184,10 @@ impl Part {
             }
         }
         // Rows before the zero are not fitted.
-        let way = (x[x.len() - 1] - x[0]).signum();
+        let direction = (x[x.len() - 1] - x[0]).signum();
         let before = x
             .iter()
-            .take_while(|x| (**x - self.zero) * way < 0.0)
+            .take_while(|x| (**x - self.zero) * direction < 0.0)
             .count();
         if self.zero != 0.0 && self.rows.start <= loading.start {
             self.rows.start = loading.start + before;
@@ -234,6 +234,13 @@ impl Part {
         };
         let done = match beginning {
             Beginning::Clean => return,
+            Beginning::Elsewhere(zero) => {
+                self.zero = zero;
+                format!(
+                    "the first row has no force at a displacement of {:.4} mm: this is the zero of displacement",
+                    mm(zero)
+                )
+            }
             Beginning::Slack {
                 zero,
                 error,

@@ -105,7 +105,7 @@ impl Role {
         let known = |stem: &str| meaning(NAMES, stem);
         let numbered =
             || axes_of(&column.name).find_map(|(stem, axis)| Some((known(stem)?, Some(axis))));
-        let plain = known(&column.name).map(|found| (found, None));
+        let plain = known(&column.name).map(|result| (result, None));
         match plain.or_else(numbered) {
             Some(((kind, measure, naming), axis)) => (Self::new(kind, measure, axis), naming),
             None => (Self::OTHER, Naming::Usual),

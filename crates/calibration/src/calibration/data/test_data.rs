@@ -231,8 +231,8 @@ impl TestData {
         match self.test {
             Test::Uniaxial => {
                 let direction = [[1.0, 0.0], [0.0, 1.0]][axis];
-                let found = law.tension(direction, observation.strains[axis]);
-                [found.energy, found.nominal_stress]
+                let result = law.tension(direction, observation.strains[axis]);
+                [result.energy, result.nominal_stress]
             }
             Test::SimpleShear => {
                 let kinematics =

@@ -35,6 +35,8 @@ const START: f64 = -1e-9;
 pub enum Beginning {
     /// Stress rises from zero at the first row.
     Clean,
+    /// The same at a strain that is not zero, as of a machine that counts its position from elsewhere.
+    Elsewhere(f64),
     /// The specimen was slack.
     Slack {
         /// The strain at which it begins to be stretched.
@@ -83,12 +85,28 @@ fn bent(x: &[f64], y: &DVector<f64>, bend: f64) -> Option<Bent> {
 impl Beginning {
     /// The beginning of a loading branch.
     pub fn of(strains: &[f64], stresses: &[f64]) -> Self {
-        Self::search(strains, stresses).unwrap_or(Self::Clean)
+        Self::search(strains, stresses).unwrap_or_else(|| Self::elsewhere(strains, stresses))
+    }
+
+    /// Where a stress that rises from nothing at the first row begins.
+    fn elsewhere(strains: &[f64], stresses: &[f64]) -> Self {
+        /// Share of the strains up to which they begin at zero.
+        const NEAR: f64 = 0.05;
+        let largest = stresses.iter().fold(0.0, |most: f64, y| most.max(y.abs()));
+        match (strains, stresses) {
+            ([first, .., last], [stress, ..])
+                if stress.abs() <= NOTHING * largest
+                    && first.abs() > NEAR * (last - first).abs() =>
+            {
+                Self::Elsewhere(*first)
+            }
+            _ => Self::Clean,
+        }
     }
 
     fn search(strains: &[f64], stresses: &[f64]) -> Option<Self> {
         let (first, last) = (*strains.first()?, *strains.last()?);
-        let way = (last - first).signum();
+        let direction = (last - first).signum();
         let still = median(stresses.iter().copied().take(BESIDE));
         let top = stresses.iter().map(|y| y - still);
         let top = top.fold(
@@ -109,25 +127,31 @@ impl Beginning {
                 .collect::<Vec<_>>()
         };
         // Both rise from zero to about one.
-        let width = (strains[rows - 1] - first) * way;
+        let width = (strains[rows - 1] - first) * direction;
         if width <= 0.0 {
             return None;
         }
         let x: Vec<f64> = thin(strains)
             .iter()
-            .map(|x| (x - first) * way / width)
+            .map(|x| (x - first) * direction / width)
             .collect();
         let y = DVector::from_vec(thin(stresses)) / top;
         let plain = bent(&x, &y, START)?;
         let slack = slack(&x, &y, &plain);
         if let Some((bend, error, flat)) = slack {
             return Some(Self::Slack {
-                zero: first + way * width * bend,
+                zero: first + direction * width * bend,
                 error: width * error,
                 offset: flat * top,
             });
         }
-        Self::loaded(&x, &y, top, [first, way * width], (last - first).abs())
+        Self::loaded(
+            &x,
+            &y,
+            top,
+            [first, direction * width],
+            (last - first).abs(),
+        )
     }
 
     /// Whether a stress acts at the first row; strains are `first` + `width` x.
@@ -167,14 +191,14 @@ fn slack(x: &[f64], y: &DVector<f64>, plain: &Bent) -> Option<(f64, f64, f64)> {
     if (plain.sum / n as f64).sqrt() < NOTHING {
         return None;
     }
-    let sum = |bend: f64| bent(x, y, bend).map_or(f64::INFINITY, |found| found.sum);
+    let sum = |bend: f64| bent(x, y, bend).map_or(f64::INFINITY, |result| result.sum);
     let inner = BESIDE..n.checked_sub(BESIDE)?;
     let best = inner.map(|row| (sum(x[row]), row));
     let (_, row) = best.min_by(|a, b| a.0.total_cmp(&b.0))?;
     let bend = golden(&sum, [x[row - 1], x[row + 1]]);
-    let found = bent(x, y, bend)?;
-    let variance = found.sum / (n - 4) as f64;
-    if plain.sum - found.sum < CLEARLY * variance {
+    let result = bent(x, y, bend)?;
+    let variance = result.sum / (n - 4) as f64;
+    if plain.sum - result.sum < CLEARLY * variance {
         return None;
     }
     let before: Vec<usize> = (0..n).filter(|row| x[*row] < bend).collect();
@@ -188,11 +212,11 @@ fn slack(x: &[f64], y: &DVector<f64>, plain: &Bent) -> Option<(f64, f64, f64)> {
     let level = DVector::from_fn(before.len(), |i, _| y[before[i]]);
     let flat = linear(&line, &level)?;
     let spread = (inverse(&line.tr_mul(&line), 1e-13)?[(1, 1)] * variance).sqrt();
-    let after = (y[n - 1] - found.coefficients[0]) / (x[n - 1] - bend);
+    let after = (y[n - 1] - result.coefficients[0]) / (x[n - 1] - bend);
     if flat[1].abs() > 3.0 * spread + 0.02 * after {
         return None;
     }
-    let (b, c) = (found.coefficients[1], found.coefficients[2]);
+    let (b, c) = (result.coefficients[1], result.coefficients[2]);
     // A bend, rather than a parabola that begins there.
     if b < 0.3 * after {
         return None;
@@ -207,7 +231,7 @@ fn slack(x: &[f64], y: &DVector<f64>, plain: &Bent) -> Option<(f64, f64, f64)> {
     if error > 0.2 * bend {
         return None;
     }
-    Some((bend, error, found.coefficients[0]))
+    Some((bend, error, result.coefficients[0]))
 }
 
 /// The least value of a function between two places, to a millionth of their distance.
@@ -270,8 +294,17 @@ mod tests {
             for scatter in [0.0, 1e-4, 1e-3] {
                 let curve = |x: f64| (exponent * x).exp_m1() / f64::exp_m1(exponent);
                 let (x, y) = record(&curve, scatter);
-                let found = Beginning::of(&x, &y);
-                assert_eq!(found, Beginning::Clean, "{exponent} {scatter}");
+                let result = Beginning::of(&x, &y);
+                assert_eq!(result, Beginning::Clean, "{exponent} {scatter}");
+                // A machine's position that begins elsewhere.
+                let from = x
+                    .iter()
+                    .map(|x| x + 1.5 - f64::from(u8::from(scatter > 0.0)));
+                let from: Vec<f64> = from.collect();
+                let moved = Beginning::of(&from, &y);
+                if y[0].abs() <= NOTHING {
+                    assert_eq!(moved, Beginning::Elsewhere(from[0]), "{exponent} {scatter}");
+                }
             }
         }
     }
@@ -287,10 +320,10 @@ mod tests {
             "{zero} {stress}"
         );
         let (x, y) = record(&|x| 2.0 * x - 0.1, 1e-3);
-        let found = Beginning::of(&x, &y);
+        let result = Beginning::of(&x, &y);
         assert!(
-            matches!(found, Beginning::Offset(y) if (y + 0.1).abs() < 2e-3),
-            "{found:?}"
+            matches!(result, Beginning::Offset(y) if (y + 0.1).abs() < 2e-3),
+            "{result:?}"
         );
     }
 }

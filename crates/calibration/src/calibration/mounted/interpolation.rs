@@ -139,8 +139,8 @@ mod tests {
         let values = interpolation.knots().iter().map(|knot| function(*knot));
         let coefficients = interpolation.coefficients(values.collect());
         for one in &strains {
-            let found = interpolation.basis(*one).value(&coefficients);
-            assert!((found - function(*one)).abs() < 3e-3, "{one:?} {found}");
+            let result = interpolation.basis(*one).value(&coefficients);
+            assert!((result - function(*one)).abs() < 3e-3, "{one:?} {result}");
         }
     }
 
@@ -152,14 +152,14 @@ mod tests {
         let values = interpolation.knots().iter().map(|knot| knot[0].exp());
         let coefficients = interpolation.coefficients(values.collect());
         for one in &strains {
-            let found = interpolation.basis(*one).value(&coefficients);
+            let result = interpolation.basis(*one).value(&coefficients);
             // Towards rest it is extrapolated.
             let within = if one[0] < 2.0 * LEAST * 0.2 {
                 1e-4
             } else {
                 3e-5
             };
-            assert!((found - one[0].exp()).abs() < within, "{one:?} {found}");
+            assert!((result - one[0].exp()).abs() < within, "{one:?} {result}");
         }
     }
 }

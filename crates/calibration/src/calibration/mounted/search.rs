@@ -123,14 +123,14 @@ impl<'a> Search<'a> {
         strains: [f64; 2],
         starts: &[Option<SheetState>],
     ) -> Result<Vec<SheetState>, SolveFault> {
-        let mut found = self.states(strains, starts[0].as_ref());
+        let mut result = self.states(strains, starts[0].as_ref());
         for start in &starts[1..] {
-            if found.is_ok() {
+            if result.is_ok() {
                 break;
             }
-            found = self.states(strains, start.as_ref());
+            result = self.states(strains, start.as_ref());
         }
-        found
+        result
     }
 
     /// The states of all laws at some strains: those of the others begin at that of the first one.

@@ -175,12 +175,12 @@ impl Solved {
         let mut best: Option<Reached> = None;
         let mut other: Option<(Vec<f64>, Middle)> = None;
         for rounds in 1..=MOST_ROUNDS {
-            let found = self.middle(law, &values);
+            let result = self.middle(law, &values);
             let before = best.as_ref().map_or(f64::INFINITY, |best| best.square);
-            let square = found.as_ref();
+            let square = result.as_ref();
             let square = square.map_or(f64::INFINITY, |middle| middle.square(&self.tests));
             if square <= AS_GOOD * before || best.is_none() {
-                let middle = found?;
+                let middle = result?;
                 share = (2.0 * share).min(SHARES[1]);
                 // Between values that are close, differences are rounding.
                 other = best
@@ -190,7 +190,7 @@ impl Solved {
                 best = Some(Reached::new(law, &values, (middle, square)));
             } else {
                 share *= 0.5;
-                other = found.ok().map(|middle| (values.clone(), middle)).or(other);
+                other = result.ok().map(|middle| (values.clone(), middle)).or(other);
             }
             let reached = best.as_mut().expect("a round");
             let tests = self.of_middle(&reached.middle);

@@ -66,8 +66,8 @@ fn record(
 }
 
 fn error_percent(fit: &Fit, law: &dyn HyperelasticLaw, strain: f64) -> f64 {
-    let [found, right] = [&*fit.fitted, law].map(|law| law.biaxial([strain; 2]));
-    let errors = [0, 1].map(|axis| 100.0 * (found[axis] / right[axis] - 1.0).abs());
+    let [actual, right] = [&*fit.fitted, law].map(|law| law.biaxial([strain; 2]));
+    let errors = [0, 1].map(|axis| 100.0 * (actual[axis] / right[axis] - 1.0).abs());
     errors[0].max(errors[1])
 }
 
@@ -75,13 +75,13 @@ fn error_percent(fit: &Fit, law: &dyn HyperelasticLaw, strain: f64) -> f64 {
 fn found_again(name: &str, right: &[f64], tests: &[TestData], percent: f64) -> Fit {
     let known = Law::named(name).unwrap();
     let law = known.with_values(right, StressMeasure::Nominal, MEASURE).0;
-    let found = fit(known, tests, &FitSettings::default()).unwrap();
-    let parameters = &found.parameters;
+    let actual = fit(known, tests, &FitSettings::default()).unwrap();
+    let parameters = &actual.parameters;
     for strain in [0.03, 0.08] {
-        let error = error_percent(&found, &*law, strain);
+        let error = error_percent(&actual, &*law, strain);
         assert!(error < percent, "{error} % at {strain}: {parameters:?}");
     }
-    found
+    actual
 }
 
 /// The homogeneous reading is off by a seventh.
@@ -89,15 +89,15 @@ fn found_again(name: &str, right: &[f64], tests: &[TestData], percent: f64) -> F
 fn a_law_is_found_again_from_forces_on_rakes() {
     let law: Arc<dyn HyperelasticLaw> = Arc::new(FungDemiray { mu: 0.02, b: 4.0 });
     let tests = [record(RAKES, &law, [1.0; 2], (0.12, 0.003))];
-    let found = found_again("fung-demiray", &[0.02, 4.0], &tests, 0.5);
-    let mounted = found.mounted.as_ref().unwrap();
+    let actual = found_again("fung-demiray", &[0.02, 4.0], &tests, 0.5);
+    let mounted = actual.mounted.as_ref().unwrap();
     assert!(
         mounted.bias_percent[0].abs() > 10.0,
         "{:?}",
         mounted.bias_percent
     );
     assert!(mounted.rounds <= 5, "{}", mounted.rounds);
-    for (estimate, right) in found.quality.estimates.iter().zip([0.02, 4.0]) {
+    for (estimate, right) in actual.quality.estimates.iter().zip([0.02, 4.0]) {
         let [low, high] = estimate.interval;
         assert!(low < right && right < high, "{estimate:?} {right}");
         assert!(estimate.standard_error < 0.01 * right, "{estimate:?}");

@@ -142,8 +142,8 @@ impl<'a> Elastic<'a> {
         let Some(Linear { at, rows, .. }) = self.linear.as_deref() else {
             return self;
         };
-        let way = values.iter().zip(at).map(|(to, from)| to - from);
-        let shares: Vec<f64> = way.zip(sizes).map(|(by, size)| by / size).collect();
+        let direction = values.iter().zip(at).map(|(to, from)| to - from);
+        let shares: Vec<f64> = direction.zip(sizes).map(|(by, size)| by / size).collect();
         let square: f64 = shares.iter().map(|share| share * share).sum();
         let weights = shares.iter().zip(sizes);
         let modelled = self.stresses(values);
@@ -224,12 +224,10 @@ impl Response for Elastic<'_> {
     fn stresses(&self, values: &[f64]) -> Vec<f64> {
         let law = self.law(values);
         let mut stresses = vec![f64::NAN; self.points.len()];
-        let pairs = self.points.iter().zip(&self.observations);
-        for (stress, (row, one)) in stresses.iter_mut().zip(pairs) {
-            let data = &self.tests[row.test];
-            *stress = data.stress_of(&*law, &self.moved(values, row.test, one));
-            if !stress.is_finite() {
-                // Values that are impossible at one observation are impossible.
+        for (index, (row, one)) in self.points.iter().zip(&self.observations).enumerate() {
+            let observation = self.moved(values, row.test, one);
+            stresses[index] = self.tests[row.test].stress_of(&*law, &observation);
+            if !stresses[index].is_finite() {
                 break;
             }
         }
@@ -244,11 +242,11 @@ impl Response for Elastic<'_> {
     fn predicted(&self, values: &[f64]) -> Vec<Vec<f64>> {
         let law = self.law(values);
         let tests = self.moved_tests(values);
-        let of_test = |data: &TestData| {
-            let rows = data.observations.iter();
-            rows.map(|one| data.stress_of(&*law, one)).collect()
+        let stresses = |test: &TestData| {
+            let rows = test.observations.iter();
+            rows.map(|row| test.stress_of(&*law, row)).collect()
         };
-        tests.iter().map(of_test).collect()
+        tests.iter().map(stresses).collect()
     }
 
     fn moved_tests(&self, values: &[f64]) -> Cow<'_, [TestData]> {
@@ -297,9 +295,9 @@ impl Response for Elastic<'_> {
         let mut at_bound = at_bound(values, bounds, [1e-9, 1e-300]);
         for (index, parameter) in self.build(values).1.parameters.iter().enumerate() {
             // Beyond a limit that depends on others, nothing changes.
-            let mut beyond = values.to_vec();
-            beyond[index] *= 1.0 + 1e-6;
-            let is_limited = self.build(&beyond).1.parameters[index].value != beyond[index];
+            let mut outside = values.to_vec();
+            outside[index] *= 1.0 + 1e-6;
+            let is_limited = self.build(&outside).1.parameters[index].value != outside[index];
             at_bound[index] |= is_limited;
             fixed[index] |= is_limited || parameter.is_symmetric_at(parameter.value);
         }

@@ -26,8 +26,8 @@ pub fn improved(
     bounds: &[[f64; 2]],
 ) -> Vec<Candidate> {
     let minimum = |start: Vec<f64>| {
-        let found = minimise(model, &start, bounds, Precision::Rough)?;
-        Some((sum_of_squares(model, &found), found))
+        let result = minimise(model, &start, bounds, Precision::Rough)?;
+        Some((sum_of_squares(model, &result), result))
     };
     sorted(starts.into_par_iter().filter_map(minimum).collect())
 }
@@ -78,12 +78,12 @@ impl Search<'_> {
         // Another minimum counts as one when it is still elsewhere after the same care.
         let least = sum_of_squares(&thinned, &values);
         let of_law = self.of_law(values.clone());
-        let elsewhere = |found: &Vec<f64>| self.differs(found, &of_law);
+        let elsewhere = |result: &Vec<f64>| self.differs(result, &of_law);
         let rival = minima
             .iter()
-            .find(|(sum, found)| *sum <= FAR * least && elsewhere(&self.of_law(found.clone())))
-            .and_then(|(_, found)| descend(&thinned, found, self.bounds))
-            .map(|found| self.of_law(found))
+            .find(|(sum, result)| *sum <= FAR * least && elsewhere(&self.of_law(result.clone())))
+            .and_then(|(_, result)| descend(&thinned, result, self.bounds))
+            .map(|result| self.of_law(result))
             .filter(elsewhere);
         let rival = rival.map(|other| Rival {
             worse: (sum(&other) / sum(&values) - 1.0).max(0.0),
@@ -120,10 +120,10 @@ impl Search<'_> {
     fn apart(&self, minima: &[Candidate]) -> Vec<Vec<f64>> {
         const ABOVE: f64 = 1.2;
         let mut chosen: Vec<Vec<f64>> = Vec::new();
-        for (sum, found) in minima {
-            let found = self.of_law(found.clone());
-            if *sum <= ABOVE * minima[0].0 && chosen.iter().all(|own| self.differs(&found, own)) {
-                chosen.push(found);
+        for (sum, result) in minima {
+            let result = self.of_law(result.clone());
+            if *sum <= ABOVE * minima[0].0 && chosen.iter().all(|own| self.differs(&result, own)) {
+                chosen.push(result);
             }
         }
         chosen.truncate(REFINED);

@@ -132,7 +132,7 @@ impl History {
     pub fn stresses(&self, data: &TestData, long: &[f64], material: &ViscousMaterial) -> Vec<f64> {
         let mut branches = vec![0.0; material.relaxation.len()];
         let mut before = long[0];
-        let mut found = Vec::with_capacity(self.states.len());
+        let mut result = Vec::with_capacity(self.states.len());
         for (node, now) in self.nodes.iter().zip(long) {
             let recursions = material.recursions(node.elapsed);
             for (q, recursion) in branches.iter_mut().zip(recursions) {
@@ -143,10 +143,10 @@ impl History {
                 let one = &node.observation;
                 let x = one.strains[one.axis];
                 let nominal = (1.0 + x) * (now + branches.iter().sum::<f64>());
-                found.push(data.stress_measure.of_nominal(nominal, x));
+                result.push(data.stress_measure.of_nominal(nominal, x));
             }
         }
-        found
+        result
     }
 
     /// From the first to the last time, in s.

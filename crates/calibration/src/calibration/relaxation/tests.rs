@@ -59,8 +59,8 @@ fn long(x: f64) -> f64 {
 fn a_sudden_stretch_relaxes_as_in_closed_form() {
     let material = series(&[(0.3, 2.0), (0.2, 0.1)]);
     let strains: Vec<[f64; 2]> = (0..60).map(|i| [0.1 * f64::from(i), 0.4]).collect();
-    let found = followed(&strains, "", &material);
-    for ([time, x], stress) in strains.iter().zip(found) {
+    let actual = followed(&strains, "", &material);
+    for ([time, x], stress) in strains.iter().zip(actual) {
         let expected = (1.0 + x) * long(*x) * material.relaxation_function(*time);
         assert!(
             (stress / expected - 1.0).abs() < 1e-12,
@@ -80,8 +80,8 @@ fn a_ramp_and_hold_of_one_maxwell_element_is_the_closed_form() {
     let times: Vec<f64> = (0..=400).map(|i| 0.02 * f64::from(i)).collect();
     let s_of = |t: f64| top * (t / rise).min(1.0);
     let strains: Vec<[f64; 2]> = times.iter().map(|t| [*t, strain(s_of(*t))]).collect();
-    let found = followed(&strains, "", &series(&[(share, tau)]));
-    for ([t, x], stress) in strains.iter().zip(found) {
+    let actual = followed(&strains, "", &series(&[(share, tau)]));
+    for ([t, x], stress) in strains.iter().zip(actual) {
         let on_ramp = |t: f64| beta * top * tau / rise * -(-t / tau).exp_m1();
         let q = if *t <= rise {
             on_ramp(*t)
@@ -101,9 +101,9 @@ fn a_ramp_and_hold_of_one_maxwell_element_is_the_closed_form() {
 fn a_rise_that_is_not_in_the_file_can_be_stated() {
     let material = series(&[(0.4, 1.5)]);
     let hold = |i: i32| [2.0 + 0.1 * f64::from(i), 0.01];
-    let whole: Vec<[f64; 2]> = [[0.0, 0.0]].into_iter().chain((0..20).map(hold)).collect();
-    let part: Vec<[f64; 2]> = whole[1..].to_vec();
-    let of_whole = followed(&whole, "", &material);
+    let complete: Vec<[f64; 2]> = [[0.0, 0.0]].into_iter().chain((0..20).map(hold)).collect();
+    let part: Vec<[f64; 2]> = complete[1..].to_vec();
+    let of_whole = followed(&complete, "", &material);
     let stated = followed(&part, "; ramp: 2 s", &material);
     let sudden = followed(&part, "", &material);
     for ((a, b), c) in of_whole[1..].iter().zip(&stated).zip(&sudden) {
@@ -126,13 +126,13 @@ fn steady_cycles_have_the_storage_and_the_loss_modulus() {
                 [t, amplitude * (TAU * frequency * t).sin()]
             })
             .collect();
-        let found = followed(&strains, "", &material);
+        let actual = followed(&strains, "", &material);
         let last = cycles * each - each..cycles * each;
         let [mut storage, mut loss] = [0.0; 2];
         for i in last {
             let (sine, cosine) = (TAU * i as f64 / each as f64).sin_cos();
-            storage += found[i] * sine * 2.0 / (each as f64 * amplitude);
-            loss += found[i] * cosine * 2.0 / (each as f64 * amplitude);
+            storage += actual[i] * sine * 2.0 / (each as f64 * amplitude);
+            loss += actual[i] * cosine * 2.0 / (each as f64 * amplitude);
         }
         let expected = material.complex_modulus(6.0, TAU * frequency);
         assert!(
@@ -303,9 +303,9 @@ fn what_cannot_be_fitted_is_told_with_a_remedy() {
         ("ogden-hill-1", &good, "is compressible"),
     ] {
         let law = Law::named(law).unwrap();
-        let told = fit_relaxation(law, tests, &FitSettings::default(), Terms::Automatic);
-        let told = told.map(|_| ()).unwrap_err().to_string();
-        assert!(told.contains(message), "{told}");
+        let output = fit_relaxation(law, tests, &FitSettings::default(), Terms::Automatic);
+        let output = output.map(|_| ()).unwrap_err().to_string();
+        assert!(output.contains(message), "{output}");
     }
 }
 
@@ -323,10 +323,11 @@ fn a_time_beyond_the_data_is_told() {
         .map(|([t, x], p)| [*t, *x, p + 1e-4 * (random.random::<f64>() - 0.5)])
         .collect();
     let fit = fitted(&[data(rows.into_iter(), "")], Terms::Exactly(1));
-    let told = fit.quality.warnings.join("\n");
+    let output = fit.quality.warnings.join("\n");
     assert!(
-        told.contains("at the limit of what the data resolve") || told.contains("not identifiable"),
-        "{told}"
+        output.contains("at the limit of what the data resolve")
+            || output.contains("not identifiable"),
+        "{output}"
     );
 }
 

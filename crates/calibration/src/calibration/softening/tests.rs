@@ -41,8 +41,8 @@ fn record_after(earlier: f64, test: &str, noise: f64, seed: u64) -> TestData {
     let normal = Normal::new(0.0, noise.max(f64::MIN_POSITIVE)).unwrap();
     let state = |x: f64| match test {
         "uniaxial" => {
-            let found = law.tension([1.0, 0.0], x);
-            [found.nominal_stress, found.energy]
+            let actual = law.tension([1.0, 0.0], x);
+            [actual.nominal_stress, actual.energy]
         }
         // Both stretches alike: 2 P dλ is the work.
         _ => {

@@ -87,19 +87,19 @@ fn one_run_ends_at_the_optimum_of_many_starts() {
         ("lee-sacks", 0.003_994_555),
         ("holzapfel-ogden", 0.002_532_484),
     ] {
-        let found = of(law, &data, &starts(8)).quality.sum_of_squares;
-        assert!((found / sum - 1.0).abs() < 1e-6, "{law}: {found}");
+        let actual = of(law, &data, &starts(8)).quality.sum_of_squares;
+        assert!((actual / sum - 1.0).abs() < 1e-6, "{law}: {actual}");
     }
 }
 
 #[test]
 fn parameters_of_made_tissue_lie_in_their_intervals_and_other_laws_do_not_explain_it() {
     for (law, truth) in TISSUES {
-        let found = of(law, &made(law, truth, 0.01, 0), &starts(8));
-        let held: Vec<&str> = found
+        let actual = of(law, &made(law, truth, 0.01, 0), &starts(8));
+        let held: Vec<&str> = actual
             .parameters
             .iter()
-            .zip(&found.quality.held)
+            .zip(&actual.quality.held)
             .filter_map(|(parameter, held)| held.then_some(parameter.key))
             .collect();
         match law {
@@ -107,9 +107,9 @@ fn parameters_of_made_tissue_lie_in_their_intervals_and_other_laws_do_not_explai
             "holzapfel-ogden" => assert_eq!(held, ["a_fs", "b_fs"]),
             _ => assert!(held.is_empty(), "{law}: {held:?}"),
         }
-        for (index, (estimate, truth)) in found.quality.estimates.iter().zip(truth).enumerate() {
+        for (index, (estimate, truth)) in actual.quality.estimates.iter().zip(truth).enumerate() {
             let [low, high] = estimate.interval;
-            let is_inside = (low..=high).contains(truth) || found.quality.held[index];
+            let is_inside = (low..=high).contains(truth) || actual.quality.held[index];
             assert!(is_inside, "{law} {index}: {low} … {high}");
         }
         let precise = made(law, truth, 5e-4, 1);
@@ -144,12 +144,12 @@ fn shear_determines_the_angle_with_its_sign_and_the_shear_stiffness() {
             &|strain| sheet.tension([1.0, 0.0], strain).nominal_stress,
         ),
     ];
-    let found = fit(law, &data, &FitSettings::default()).unwrap();
-    for (parameter, truth) in found.parameters.iter().zip(truth) {
+    let actual = fit(law, &data, &FitSettings::default()).unwrap();
+    for (parameter, truth) in actual.parameters.iter().zip(truth) {
         let off = (parameter.value / truth - 1.0).abs();
         assert!(off < 1e-3, "{} {}", parameter.key, parameter.value);
     }
-    assert!(!found.quality.held.contains(&true));
+    assert!(!actual.quality.held.contains(&true));
 }
 
 /// Fibres at 45° couple both axes more than a convex energy of Fung can: a₃ ends at its limit √(a₁ a₂).
@@ -160,13 +160,13 @@ fn a_convex_energy_is_the_best_one_within_its_limit() {
     let [few, many] = [8, 60].map(|count| of("fung", &data, &starts(count)));
     let ratio = few.quality.sum_of_squares / many.quality.sum_of_squares;
     assert!((ratio - 1.0).abs() < 1e-6, "{ratio}");
-    for found in [few, many] {
-        let [_, a1, a2, a3, ..] = &found.parameters[..] else {
+    for actual in [few, many] {
+        let [_, a1, a2, a3, ..] = &actual.parameters[..] else {
             panic!()
         };
         let share = a3.value / (a1.value * a2.value).sqrt();
         assert!(share < 1.0 && share > 1.0 - 1e-8, "{share}");
-        assert!(found.quality.at_bound[3]);
+        assert!(actual.quality.at_bound[3]);
     }
 }
 
@@ -178,9 +178,9 @@ fn a_stated_parameter_is_not_fitted() {
     let free = of(law, &data, &starts(8));
     for (index, key) in [(0, "c10"), (5, "angle")] {
         let value = free.parameters[index].value;
-        let found = of(law, &data, &stated(key, value));
-        assert_eq!(found.parameters[index].value, value);
-        let (quality, free) = (&found.quality, &free.quality);
+        let actual = of(law, &data, &stated(key, value));
+        assert_eq!(actual.parameters[index].value, value);
+        let (quality, free) = (&actual.quality, &free.quality);
         assert!((quality.sum_of_squares / free.sum_of_squares - 1.0).abs() < 1e-9);
         assert!(
             (free.aicc - quality.aicc - 2.1).abs() < 0.1,
@@ -190,7 +190,7 @@ fn a_stated_parameter_is_not_fitted() {
         assert!(quality.held[index] && !quality.at_bound[index]);
         assert!(quality.estimates[index].standard_error.is_nan());
         let tests = std::slice::from_ref(&data);
-        let text = card_text(&found, tests, &Provenance::default());
+        let text = card_text(&actual, tests, &Provenance::default());
         assert!(text.contains("# held, not fitted"), "{text}");
         let again = Card::parse("card", "card", &text).unwrap();
         assert_eq!(
@@ -199,12 +199,12 @@ fn a_stated_parameter_is_not_fitted() {
         );
     }
     // Stresses are completed beside what is stated.
-    let found = of(law, &data, &stated("c10", 0.05));
-    assert_eq!(found.parameters[0].value, 0.05);
-    assert!(found.quality.sum_of_squares > free.quality.sum_of_squares);
+    let actual = of(law, &data, &stated("c10", 0.05));
+    assert_eq!(actual.parameters[0].value, 0.05);
+    assert!(actual.quality.sum_of_squares > free.quality.sum_of_squares);
     // An angle beyond the period is what it says.
-    let found = of(law, &data, &stated("angle", -0.35));
-    assert_eq!(found.parameters[5].value, -0.35);
+    let actual = of(law, &data, &stated("angle", -0.35));
+    assert_eq!(actual.parameters[5].value, -0.35);
     let refused = fit(
         Law::named(law).unwrap(),
         std::slice::from_ref(&data),

@@ -19,12 +19,12 @@ fn fitted(law: &str, path: &str) -> Fit {
 /// The optimum of trust-region least squares from several random starts. A fit that once ended at 15.7 rad had a k₁ of 0.17314 MPa.
 #[test]
 fn fibres_in_tissue_are_found_within_one_period_and_at_the_optimum() {
-    let found = fitted(
+    let result = fitted(
         "holzapfel-gasser-ogden",
         "../../validation/measured/tissue_biaxial/protocols.csv",
     );
     let optimum = [0.068298, 0.174202, 58.5944, 0.307137, 0.0];
-    for (parameter, optimum) in found.parameters.iter().zip(optimum) {
+    for (parameter, optimum) in result.parameters.iter().zip(optimum) {
         let off = (parameter.value - optimum).abs();
         assert!(
             off <= 1e-5 * optimum,
@@ -33,10 +33,10 @@ fn fibres_in_tissue_are_found_within_one_period_and_at_the_optimum() {
             parameter.value
         );
     }
-    let sum = found.quality.sum_of_squares;
+    let sum = result.quality.sum_of_squares;
     assert!((sum / 0.007_040_684_567_6 - 1.0).abs() < 1e-9, "{sum}");
-    let told = found.quality.warnings.join("; ");
-    assert!(!told.contains("not unique"), "{told}");
+    let message = result.quality.warnings.join("; ");
+    assert!(!message.contains("not unique"), "{message}");
 }
 
 /// A valley, r = (a − 1, 30 (b − a²)): nothing there but (1, 1) is a minimum, however small the steps of a search are.
@@ -74,8 +74,8 @@ fn terms_of_a_sum_of_powers_are_in_order() {
             weighting,
             ..FitSettings::default()
         };
-        let found = fit(Law::named("ogden-2").unwrap(), &data, &settings).unwrap();
-        assert!(found.parameters[1].value > found.parameters[3].value);
+        let result = fit(Law::named("ogden-2").unwrap(), &data, &settings).unwrap();
+        assert!(result.parameters[1].value > result.parameters[3].value);
     }
 }
 
@@ -83,10 +83,10 @@ fn terms_of_a_sum_of_powers_are_in_order() {
 /// the same everywhere would hide that.
 #[test]
 fn a_smooth_trend_is_a_misfit_of_the_law_where_noise_is_smallest() {
-    let found = fitted("gent", "../../materials/data/treloar_1944_uniaxial.csv").quality;
-    let verdict = found.verdict.unwrap();
+    let result = fitted("gent", "../../materials/data/treloar_1944_uniaxial.csv").quality;
+    let verdict = result.verdict.unwrap();
     assert_eq!(verdict.answer, Answer::Systematic, "{verdict:?}");
-    assert!(verdict.suits_other_weights && !found.has_intervals());
+    assert!(verdict.suits_other_weights && !result.has_intervals());
 }
 
 /// Noise of neo-Hooke that is the same everywhere, by relative weights: large only where the stress is small.
@@ -107,8 +107,8 @@ fn even_noise_by_relative_weights_is_no_pattern() {
         let rows: String = rows.collect();
         let text = format!("# test: uniaxial\nstretch [-],nominal_stress [MPa]\n{rows}");
         let data = [TestData::parse("a.csv", &text, &Statements::new()).unwrap()];
-        let found = fit(Law::named("neo-hooke").unwrap(), &data, &settings).unwrap();
-        found.quality.verdict.unwrap().answer == Answer::Systematic
+        let result = fit(Law::named("neo-hooke").unwrap(), &data, &settings).unwrap();
+        result.quality.verdict.unwrap().answer == Answer::Systematic
     });
     let count = systematic.count();
     assert!(count <= 3, "{count} of 60");

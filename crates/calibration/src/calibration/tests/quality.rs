@@ -42,15 +42,15 @@ fn the_figures_of_a_fit_are_as_defined() {
             ..FitSettings::default()
         };
         let data = tests(&points);
-        let found = fitted("neo-hooke", &data, &settings);
-        let c10 = found.parameters[0].value;
+        let actual = fitted("neo-hooke", &data, &settings);
+        let c10 = actual.parameters[0].value;
         let off: Vec<f64> = points.iter().map(|(l, s)| s - c10 * slope(*l)).collect();
         let squares: f64 = off.iter().map(|d| d * d).sum();
         let mean = points.iter().map(|(_, s)| s).sum::<f64>() / 5.0;
         let spread: f64 = points.iter().map(|(_, s)| (s - mean).powi(2)).sum();
         let counted = off.iter().zip(&points).filter(|(_, (_, s))| *s > 0.0016);
         let largest = counted.map(|(d, (_, s))| (d / s).abs()).fold(0.0, f64::max);
-        let quality = &found.quality;
+        let quality = &actual.quality;
         // n = 5 points, k = 2: −2 ln L + 2k + 2k(k + 1)/(n − k − 1) = −2 ln L + 10.
         let weights = points.map(|(_, s): (f64, f64)| match weighting {
             Weighting::Absolute => 1.0,
@@ -59,7 +59,7 @@ fn the_figures_of_a_fit_are_as_defined() {
         let surprise = quality.noise.as_ref().unwrap().surprise();
         let aicc = surprise - 2.0 * weights.iter().map(|w| w.ln()).sum::<f64>() + 10.0;
         let is_measured = weighting == Weighting::Absolute;
-        for (what, found, expected) in [
+        for (what, actual, expected) in [
             ("S", quality.sum_of_squares, squares),
             ("rmse", quality.rmse, (squares / 5.0).sqrt()),
             ("R²", quality.r_squared, 1.0 - squares / spread),
@@ -76,8 +76,8 @@ fn the_figures_of_a_fit_are_as_defined() {
             ),
         ] {
             assert!(
-                (found / expected - 1.0).abs() < 1e-9,
-                "{what}: {found} {expected}"
+                (actual / expected - 1.0).abs() < 1e-9,
+                "{what}: {actual} {expected}"
             );
         }
     }
@@ -97,8 +97,8 @@ fn two_parameters_have_the_uncertainty_of_linear_regression() {
         };
         let points: Vec<_> = (1..=12).map(row).collect();
         let data = tests(&points);
-        let found = fitted("mooney-rivlin", &data, &FitSettings::default());
-        let [c10, c01] = [0, 1].map(|index| found.parameters[index].value);
+        let actual = fitted("mooney-rivlin", &data, &FitSettings::default());
+        let [c10, c01] = [0, 1].map(|index| actual.parameters[index].value);
         let design = DMatrix::from_fn(12, 2, |i, j| {
             let (stretch, _) = points[i];
             -slope(stretch) / [1.0, stretch][j]
@@ -112,22 +112,24 @@ fn two_parameters_have_the_uncertainty_of_linear_regression() {
             sizes: &DVector::from_element(12, 1.0),
         };
         let expected = residuals.noise().unwrap();
-        for (i, estimate) in found.quality.estimates.iter().enumerate() {
+        for (i, estimate) in actual.quality.estimates.iter().enumerate() {
             let unit = DVector::from_fn(2, |j, _| f64::from(u8::from(i == j)));
             let half = (estimate.interval[1] - estimate.interval[0]) / 2.0;
             assert!((half / expected.half_width(&unit) - 1.0).abs() < 1e-5);
             // The standard error is that of the interval, not of the mean covariance, in which improbable noises count most.
             assert!((estimate.standard_error * expected.reach() / half - 1.0).abs() < 1e-12);
         }
-        let correlation = found.quality.correlation[(0, 1)];
+        let correlation = actual.quality.correlation[(0, 1)];
         // C₀₁, whose true value is zero, has either sign and is not known to have it.
-        assert!(!found.quality.is_identifiable());
-        let told = &found.quality.warnings;
-        let vague = told.iter().find(|told| told.contains("not identifiable"));
-        assert!(vague.unwrap().contains("c01"), "{told:?}");
-        let close = told
+        assert!(!actual.quality.is_identifiable());
+        let message = &actual.quality.warnings;
+        let vague = message
             .iter()
-            .any(|told| told.contains("hardly be distinguished"));
+            .find(|message| message.contains("not identifiable"));
+        assert!(vague.unwrap().contains("c01"), "{message:?}");
+        let close = message
+            .iter()
+            .any(|message| message.contains("hardly be distinguished"));
         assert_eq!(close, correlation.abs() >= 0.99, "{correlation}");
     }
 }
@@ -143,10 +145,10 @@ fn a_bound_nearby_does_not_hold_a_parameter() {
         (1.6, 0.05 * slope(1.6)),
         (2.0, 0.05 * slope(2.0)),
     ];
-    let found = fitted("neo-hooke", &tests(&points), &settings);
-    let estimate = found.quality.estimates[0];
-    assert!((found.parameters[0].value - 0.05).abs() < 1e-3);
-    assert!(!found.quality.at_bound[0] && estimate.standard_error > 0.0);
+    let actual = fitted("neo-hooke", &tests(&points), &settings);
+    let estimate = actual.quality.estimates[0];
+    assert!((actual.parameters[0].value - 0.05).abs() < 1e-3);
+    assert!(!actual.quality.at_bound[0] && estimate.standard_error > 0.0);
 }
 
 #[test]
@@ -196,11 +198,11 @@ fn a_law_that_does_not_follow_the_data_at_all_is_refused_with_what_was_read() {
     let law = Law::named("neo-hooke").unwrap();
     let settings = FitSettings::default();
     let refused = fit(law, &tests(&points), &settings).unwrap_err();
-    let told = refused.to_string();
+    let message = refused.to_string();
     assert_eq!(refused.exit_code(), 2);
     assert!(
-        told.contains("does not follow the data at all") && told.contains("lines 3 to 22"),
-        "{told}"
+        message.contains("does not follow the data at all") && message.contains("lines 3 to 22"),
+        "{message}"
     );
     let (fits, reasons) = rank(&tests(&points), &settings);
     assert!(fits.iter().all(|fit| fit.quality.follows_data()));
@@ -217,16 +219,19 @@ fn protocols_of_a_biaxial_test_support_the_tests_that_they_cover() {
     let reading = [("thickness".to_owned(), "0.8 mm".to_owned())].into();
     let path = Path::new("../../examples/biaxial_record.csv");
     let data = [TestData::read(path, &reading).unwrap()];
-    let found = fitted("neo-hooke", &data, &FitSettings::default());
-    assert_eq!(found.quality.untested, [Mode::Uniaxial, Mode::Planar]);
-    let told = &found.quality.warnings;
+    let actual = fitted("neo-hooke", &data, &FitSettings::default());
+    assert_eq!(actual.quality.untested, [Mode::Uniaxial, Mode::Planar]);
+    let message = &actual.quality.warnings;
     let expected = "uniaxial and planar stresses are predictions that no data support";
-    assert!(told.iter().any(|told| told == expected), "{told:?}");
+    assert!(
+        message.iter().any(|message| message == expected),
+        "{message:?}"
+    );
 }
 
 #[test]
 fn a_card_is_called_by_the_names_of_its_files() {
-    let found = fitted(
+    let actual = fitted(
         "neo-hooke",
         &tests(&[(1.1, 0.03), (1.2, 0.05), (1.5, 0.1)]),
         &FitSettings::default(),
@@ -235,7 +240,7 @@ fn a_card_is_called_by_the_names_of_its_files() {
         files: vec!["../../export.csv".to_owned()],
         ..Provenance::default()
     };
-    let card = card_text(&found, &tests(&[(1.1, 0.03)]), &provenance);
+    let card = card_text(&actual, &tests(&[(1.1, 0.03)]), &provenance);
     assert!(
         card.contains("title = \"neo-hooke fitted to export.csv\""),
         "{card}"

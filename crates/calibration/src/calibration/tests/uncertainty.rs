@@ -113,10 +113,10 @@ fn intervals_hold_the_uncertainty_of_zeros_that_were_found() {
     for beginning in ["preload", "slack", "offset"] {
         let mut all = Held::default();
         for subject in PULLED {
-            let found = Held::of(subject, &|seed| record(subject, beginning, seed));
-            all.fits += found.fits;
-            all.held += found.held;
-            all.intervals += found.intervals;
+            let actual = Held::of(subject, &|seed| record(subject, beginning, seed));
+            all.fits += actual.fits;
+            all.held += actual.held;
+            all.intervals += actual.intervals;
         }
         assert!(all.fits >= 150, "{beginning}: {all:?}");
         assert!((0.9..=0.99).contains(&all.share()), "{beginning}: {all:?}");
@@ -126,20 +126,20 @@ fn intervals_hold_the_uncertainty_of_zeros_that_were_found() {
 #[test]
 fn intervals_beside_a_parameter_at_its_bound_hold_the_truth() {
     let subject: Subject = ("neo-hooke-simo-pister", &[0.05, 0.49]);
-    let found = Held::of(subject, &|seed| {
+    let actual = Held::of(subject, &|seed| {
         let row = |share: f64| [1.0 + 0.8 * share, stress(subject, "uniaxial", 0.8 * share)];
         let noise = 0.01 * stress(subject, "uniaxial", 0.8);
         let head = "# test: uniaxial\nstretch [-],nominal_stress [MPa]\n";
         vec![read(&(head.to_owned() + &rows(40, noise, seed, &row)))]
     });
-    assert!(found.intervals > 50 && found.share() > 0.9, "{found:?}");
+    assert!(actual.intervals > 50 && actual.share() > 0.9, "{actual:?}");
 }
 
 #[test]
 fn tests_of_unequal_noise_have_intervals_that_hold_the_truth() {
     let subject: Subject = ("mooney-rivlin", &[0.04, 0.01]);
     for noises in [[1e-2, 1e-3, 1e-3], [1e-3, 1e-3, 1e-2], [1e-3; 3]] {
-        let found = Held::of(subject, &|seed| {
+        let actual = Held::of(subject, &|seed| {
             let tests = ["uniaxial", "planar", "equibiaxial"]
                 .into_iter()
                 .enumerate();
@@ -157,10 +157,10 @@ fn tests_of_unequal_noise_have_intervals_that_hold_the_truth() {
             };
             tests.map(test).collect()
         });
-        assert!(found.fits >= 37, "{noises:?}: {found:?}");
+        assert!(actual.fits >= 37, "{noises:?}: {actual:?}");
         assert!(
-            (0.88..=1.0).contains(&found.share()),
-            "{noises:?}: {found:?}"
+            (0.88..=1.0).contains(&actual.share()),
+            "{noises:?}: {actual:?}"
         );
     }
 }

@@ -46,8 +46,8 @@ fn fitted(law: &str, tests: &[TestData]) -> Fit {
 
 fn answers(law: &str, correlation: f64) -> Vec<Answer> {
     let one = |seed| {
-        let found = fitted(law, &curve(&noise(60, correlation, seed), 17));
-        found.quality.verdict.unwrap().answer
+        let actual = fitted(law, &curve(&noise(60, correlation, seed), 17));
+        actual.quality.verdict.unwrap().answer
     };
     (0..10).map(one).collect()
 }
@@ -65,11 +65,11 @@ fn white_noise_correlated_noise_and_a_wrong_law_are_told_apart() {
 fn a_curve_without_noise_has_no_intervals() {
     for decimals in [3, 5, 17] {
         let tests = curve(&[0.0; 60], decimals);
-        let found = fitted("yeoh", &tests);
-        let verdict = found.quality.verdict.unwrap();
+        let actual = fitted("yeoh", &tests);
+        let verdict = actual.quality.verdict.unwrap();
         assert_eq!(verdict.answer, Answer::Rounding, "{decimals}: {verdict:?}");
-        assert!(found.half_widths(&tests[0], &tests[0].observations)[0].is_nan());
-        assert!(card_text(&found, &tests, &Provenance::default()).contains("MPa\" # no interval"));
+        assert!(actual.half_widths(&tests[0], &tests[0].observations)[0].is_nan());
+        assert!(card_text(&actual, &tests, &Provenance::default()).contains("MPa\" # no interval"));
     }
     let coarse = fitted("yeoh", &curve(&noise(60, 0.0, 1), 3));
     assert!(coarse.quality.has_intervals());
@@ -79,17 +79,17 @@ fn a_curve_without_noise_has_no_intervals() {
 #[test]
 fn the_band_of_a_curve_is_that_of_its_combination_of_parameters() {
     let tests = curve(&noise(60, 0.5, 3), 17);
-    let found = fitted("neo-hooke", &curve(&noise(60, 0.5, 3), 17)[..]);
-    assert!(found.half_widths(&tests[0], &tests[0].observations)[0].is_nan());
-    let found = fitted("yeoh", &tests);
+    let actual = fitted("neo-hooke", &curve(&noise(60, 0.5, 3), 17)[..]);
+    assert!(actual.half_widths(&tests[0], &tests[0].observations)[0].is_nan());
+    let actual = fitted("yeoh", &tests);
     let at = tests[0].observations[30];
     let stretch = 1.0 + at.strains[0];
     let slope = 2.0 * (stretch - stretch.powi(-2));
     let invariant = stretch * stretch + 2.0 / stretch - 3.0;
     let by = [1.0, 2.0 * invariant, 3.0 * invariant * invariant];
     let gradient = nalgebra::DVector::from_iterator(3, by.map(|factor| slope * factor));
-    let noise = found.quality.noise.as_ref().unwrap();
-    let band = found.half_widths(&tests[0], &[at])[0];
+    let noise = actual.quality.noise.as_ref().unwrap();
+    let band = actual.half_widths(&tests[0], &[at])[0];
     assert!((band / noise.half_width(&gradient) - 1.0).abs() < 1e-5);
 }
 
@@ -114,7 +114,7 @@ fn many_points_are_gathered_without_loss() {
 /// A file whose rows are in no order: neighbours in strain are alike, neighbours in the file are not.
 #[test]
 fn noise_that_correlates_along_the_strain_is_found_in_any_order_of_rows() {
-    let found = (0..5).filter(|seed| {
+    let actual = (0..5).filter(|seed| {
         let mut tests = curve(&noise(61, 0.9, *seed), 17);
         let sorted = tests[0].observations.clone();
         for (index, observation) in tests[0].observations.iter_mut().enumerate() {
@@ -123,7 +123,7 @@ fn noise_that_correlates_along_the_strain_is_found_in_any_order_of_rows() {
         let verdict = fitted("yeoh", &tests).quality.verdict.unwrap();
         verdict.answer == Answer::Correlated && verdict.effective_points < 30.0
     });
-    assert!(found.count() >= 4);
+    assert!(actual.count() >= 4);
 }
 
 /// The noise of a strain along a steady pull, in the order of time: its stress is the law's at another strain than the one that stands there.

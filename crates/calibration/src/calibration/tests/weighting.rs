@@ -90,12 +90,12 @@ impl Counts {
         let verdict = quality.verdict.unwrap().answer;
         let held = quality.estimates.iter().zip(truth);
         let held = held.filter(|(one, truth)| (one.interval[0]..=one.interval[1]).contains(*truth));
-        let told = usize::from(verdict.has_intervals());
+        let message = usize::from(verdict.has_intervals());
         Self {
             systematic: usize::from(verdict == Answer::Systematic),
-            held: told * held.count(),
-            intervals: told * truth.len(),
-            vague: told * usize::from(!quality.is_identifiable()),
+            held: message * held.count(),
+            intervals: message * truth.len(),
+            vague: message * usize::from(!quality.is_identifiable()),
         }
     }
 
@@ -129,13 +129,13 @@ fn noise_that_suits_the_weights_is_called_noise_and_intervals_hold_the_truth() {
     for weighting in [Weighting::Absolute, Weighting::Relative] {
         let mut sum = Counts::default();
         for subject in SUBJECTS {
-            let found = counts(&ALL[..1], subject, weighting);
+            let actual = counts(&ALL[..1], subject, weighting);
             assert!(
-                found.systematic <= 3,
-                "{} {weighting:?}: {found:?}",
+                actual.systematic <= 3,
+                "{} {weighting:?}: {actual:?}",
                 subject.0
             );
-            sum = sum.add(found);
+            sum = sum.add(actual);
         }
         let joint = counts(&ALL, ("mooney-rivlin", &[0.04, 0.01], 1.6), weighting);
         assert!(joint.systematic <= 3 && joint.vague == 0, "{joint:?}");
@@ -150,12 +150,12 @@ fn noise_that_suits_the_weights_is_called_noise_and_intervals_hold_the_truth() {
 fn a_wrong_law_is_found_by_either_weighting() {
     let subject = ("yeoh", &[0.03, 0.01, 0.002][..], 2.5);
     for weighting in [Weighting::Absolute, Weighting::Relative] {
-        let found = (0..10).filter(|seed| {
+        let actual = (0..10).filter(|seed| {
             let data = [measured("uniaxial", subject, weighting, 40, *seed)];
             let verdict = fitted("neo-hooke", &data, weighting).verdict.unwrap();
             verdict.answer == Answer::Systematic
         });
-        assert_eq!(found.count(), 10, "{weighting:?}");
+        assert_eq!(actual.count(), 10, "{weighting:?}");
     }
 }
 
@@ -170,8 +170,8 @@ fn proportional_noise_does_not_make_a_law_softer() {
         let stress = 0.1 * (stretch - stretch.powi(-2)) * (1.0 + 0.1 * noise);
         text += &format!("{stretch:.8},{stress:.10}\n");
     }
-    let found = fitted("neo-hooke", &[read(&text)], Weighting::Relative);
-    let one = found.estimates[0];
+    let actual = fitted("neo-hooke", &[read(&text)], Weighting::Relative);
+    let one = actual.estimates[0];
     assert!((one.value / 0.05 - 1.0).abs() < 0.006, "{one:?}");
     assert!(one.interval[0] < 0.05 && 0.05 < one.interval[1], "{one:?}");
 }
@@ -189,8 +189,8 @@ fn neo_hooke(stretches: &[f64], noise: f64, seed: u64) -> Vec<(f64, f64)> {
 }
 
 fn answer(text: &str) -> Answer {
-    let found = fitted("neo-hooke", &[read(text)], Weighting::Absolute);
-    found.verdict.unwrap().answer
+    let actual = fitted("neo-hooke", &[read(text)], Weighting::Absolute);
+    actual.verdict.unwrap().answer
 }
 
 #[test]

@@ -194,22 +194,22 @@ mod tests {
             weighting,
             ..FitSettings::default()
         };
-        let found = fit(Law::named("neo-hooke").unwrap(), tests, &settings).unwrap();
-        assert!(found.quality.has_intervals());
-        found
+        let result = fit(Law::named("neo-hooke").unwrap(), tests, &settings).unwrap();
+        assert!(result.quality.has_intervals());
+        result
             .quality
             .warnings
             .iter()
-            .any(|told| told.contains(words))
+            .any(|message| message.contains(words))
     }
 
     #[test]
     fn noise_that_grows_with_the_stress_is_told_and_even_noise_is_not() {
         let grows = "grow with the stress";
-        let mut found = 0;
+        let mut result = 0;
         for seed in 0..10 {
             let uneven = tension(0.05, seed, |stress| 0.05 * stress);
-            found += usize::from(warned(
+            result += usize::from(warned(
                 std::slice::from_ref(&uneven),
                 Weighting::Absolute,
                 grows,
@@ -222,7 +222,7 @@ mod tests {
             assert!(!warned(&[even], Weighting::Absolute, grows), "{seed}");
         }
         // Of eighty points some seven in ten.
-        assert!(found >= 6, "{found} of 10");
+        assert!(result >= 6, "{result} of 10");
     }
 
     /// The warnings of a fit of neo-Hooke to three strips of some moduli, whose specimens have some names.
@@ -234,9 +234,9 @@ mod tests {
         });
         let tests: Vec<TestData> = tests.collect();
         let law = Law::named("neo-hooke").unwrap();
-        let found = fit(law, &tests, &FitSettings::default()).unwrap();
-        assert!(found.quality.has_intervals());
-        found.quality.warnings.join("; ")
+        let result = fit(law, &tests, &FitSettings::default()).unwrap();
+        assert!(result.quality.has_intervals());
+        result.quality.warnings.join("; ")
     }
 
     #[test]
@@ -305,13 +305,13 @@ mod tests {
                 TestData::parse("a.csv", &format!("{head}{rows}"), &Statements::default()).unwrap()
             };
             let tests: Vec<TestData> = files.iter().map(read).collect();
-            let found = fit(
+            let result = fit(
                 Law::named("fung-demiray").unwrap(),
                 &tests,
                 &FitSettings::default(),
             )
             .unwrap();
-            let mut warnings = found.quality.warnings.into_iter();
+            let mut warnings = result.quality.warnings.into_iter();
             warnings.find(|one| one.contains("3 protocols")).unwrap()
         };
         let in_one = warned(&[parts.concat()], "");

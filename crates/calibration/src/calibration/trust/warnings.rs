@@ -46,8 +46,8 @@ fn is_possible(rival: &Rival, quality: &Quality) -> bool {
 
 /// Zeros that were found in the records and are taken as known.
 pub fn taken_zeros(tests: &[TestData]) -> Option<String> {
-    let found = tests.iter().filter(|test| test.found_zero.is_some());
-    let names: Vec<&str> = found.map(|test| &*test.name).collect();
+    let result = tests.iter().filter(|test| test.found_zero.is_some());
+    let names: Vec<&str> = result.map(|test| &*test.name).collect();
     (!names.is_empty()).then(|| {
         format!(
             "the zero that was found in {} is taken as known: the intervals do not include its uncertainty",

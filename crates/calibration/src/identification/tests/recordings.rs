@@ -41,13 +41,13 @@ fn what_bends_the_functions_and_hides_from_the_misfit_is_named() {
     for (words, size, change) in cases {
         let mut recording = sound.clone();
         change(&mut recording);
-        let found = identify(&recording, IdentificationSettings::default(), &|_| ()).unwrap();
-        let told = asked_for(&found).unwrap_or_default();
+        let actual = identify(&recording, IdentificationSettings::default(), &|_| ()).unwrap();
+        let message = asked_for(&actual).unwrap_or_default();
         // Zeros of force and extension are much the same: that of the other may be named first.
-        let own = told
+        let own = message
             .split(", or alternatively ")
             .find_map(|one| one.strip_prefix(words));
-        let own = own.unwrap_or_else(|| panic!("{words}: {told}"));
+        let own = own.unwrap_or_else(|| panic!("{words}: {message}"));
         let numbers: Vec<f64> = own
             .split([' ', '±'])
             .filter_map(|word| word.parse().ok())
@@ -113,18 +113,18 @@ fn what_smooth_functions_go_past_is_named() {
     ];
     for (words, stiffness, damping) in cases {
         let recording = swinging(stiffness, damping);
-        let found = identify(&recording, IdentificationSettings::default(), &|_| ()).unwrap();
-        let told = asked_for(&found).unwrap_or_default();
-        assert!(told.contains(words), "{words}: {told}");
+        let actual = identify(&recording, IdentificationSettings::default(), &|_| ()).unwrap();
+        let message = asked_for(&actual).unwrap_or_default();
+        assert!(message.contains(words), "{words}: {message}");
     }
     let sound = swinging(constant_k, constant_d);
-    let found = identify(&sound, IdentificationSettings::default(), &|_| ()).unwrap();
-    assert_eq!(asked_for(&found), None);
+    let actual = identify(&sound, IdentificationSettings::default(), &|_| ()).unwrap();
+    assert_eq!(asked_for(&actual), None);
 }
 
 /// What a recording asks for by its verdict.
-fn asked_for(found: &Identification) -> Option<String> {
-    let first = found.verdict.reasons.first()?;
+fn asked_for(actual: &Identification) -> Option<String> {
+    let first = actual.verdict.reasons.first()?;
     let asked = first.strip_prefix("the recording indicates ")?;
     Some(asked.split(':').next().unwrap_or_default().to_owned())
 }
@@ -134,13 +134,13 @@ fn asked_for(found: &Identification) -> Option<String> {
 fn what_is_not_explained_has_no_intervals() {
     let mut recording = Sample::default().recording();
     recording.mass *= 1.15;
-    let found = identify(&recording, IdentificationSettings::default(), &|_| ()).unwrap();
+    let actual = identify(&recording, IdentificationSettings::default(), &|_| ()).unwrap();
     assert!(
-        found.misfit < 2.0 && !found.is_explained(),
+        actual.misfit < 2.0 && !actual.is_explained(),
         "{}",
-        found.misfit
+        actual.misfit
     );
-    for (name, _, function) in found.functions() {
+    for (name, _, function) in actual.functions() {
         let estimate = function.at(2.0);
         assert!(estimate.value.is_finite(), "{name}");
         let ends = [estimate.interval, function.band(2.0)].concat();
@@ -157,13 +157,13 @@ fn a_drift_of_the_extension_is_named_before_one_of_the_force() {
     for (i, x) in recording.extension.iter_mut().enumerate() {
         *x += 1.3 * i as f64 / count;
     }
-    let found = identify(&recording, IdentificationSettings::default(), &|_| ()).unwrap();
-    let asked = asked_for(&found).unwrap_or_default();
+    let actual = identify(&recording, IdentificationSettings::default(), &|_| ()).unwrap();
+    let asked = asked_for(&actual).unwrap_or_default();
     assert!(
         asked.starts_with("an extension that drifts by 1."),
         "{asked}"
     );
-    assert!(!found.is_explained());
+    assert!(!actual.is_explained());
 }
 
 /// Splines leave a misfit of 2 of a quick motion without noise, in which nothing can be measured.
@@ -174,12 +174,12 @@ fn a_recording_without_noise_is_explained() {
         instants: 1001,
         ..Sample::default()
     };
-    let found = identify(&sample.exact(), IdentificationSettings::default(), &|_| ()).unwrap();
-    assert!(found.verdict.is_sound(), "{:?}", found.verdict);
+    let actual = identify(&sample.exact(), IdentificationSettings::default(), &|_| ()).unwrap();
+    assert!(actual.verdict.is_sound(), "{:?}", actual.verdict);
     let mut wrong = sample.exact();
     wrong.mass *= 1.01;
-    let found = identify(&wrong, IdentificationSettings::default(), &|_| ()).unwrap();
-    let asked = asked_for(&found).unwrap_or_default();
+    let actual = identify(&wrong, IdentificationSettings::default(), &|_| ()).unwrap();
+    let asked = asked_for(&actual).unwrap_or_default();
     assert!(
         asked.starts_with("a mass that is smaller by 2.0"),
         "{asked}"
@@ -195,8 +195,8 @@ fn sound_recordings_are_suspected_of_nothing() {
             ..Sample::default()
         };
         for forms in [[Form::SPLINE; 2], [Form::Constant; 2]] {
-            let found = identify(&sample.recording(), settings(forms), &|_| ()).unwrap();
-            assert_eq!(asked_for(&found), None, "{seed} {forms:?}");
+            let actual = identify(&sample.recording(), settings(forms), &|_| ()).unwrap();
+            assert_eq!(asked_for(&actual), None, "{seed} {forms:?}");
         }
     }
 }
@@ -204,12 +204,12 @@ fn sound_recordings_are_suspected_of_nothing() {
 /// Bands of steady vibrations are too narrow where there is much noise.
 #[test]
 fn a_steady_vibration_is_told() {
-    let told = |amplitudes: [f64; 2]| {
+    let message = |amplitudes: [f64; 2]| {
         let recording = swinging_by(amplitudes, |x| 0.2 + 0.01 * x, |_| 0.04);
-        let found = identify(&recording, IdentificationSettings::default(), &|_| ()).unwrap();
-        let mut doubts = found.verdict.doubts.iter();
+        let actual = identify(&recording, IdentificationSettings::default(), &|_| ()).unwrap();
+        let mut doubts = actual.verdict.doubts.iter();
         doubts.any(|doubt| doubt.contains("steady vibration"))
     };
-    assert!(told([6.0, 0.0]));
-    assert!(!told([6.0, 4.0]));
+    assert!(message([6.0, 0.0]));
+    assert!(!message([6.0, 4.0]));
 }

@@ -13,7 +13,7 @@ use crate::mesh::cells::Mesh;
 pub struct MeshData {
     /// The places of the nodes, in the unit that the [reading](MeshReading) names; z is the same everywhere.
     pub positions: Vec<[f64; 3]>,
-    /// The cells: the numbers of their nodes among `places`, in VTK's order.
+    /// The cells: the numbers of their nodes among `positions`, in VTK's order.
     pub cells: Vec<(CellShape, Vec<usize>)>,
     /// Parts of the boundary by name: both ends of each line.
     pub lines: BTreeMap<String, Vec<[usize; 2]>>,

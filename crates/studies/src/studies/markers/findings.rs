@@ -9,6 +9,7 @@ use super::quantities::{outliers, used};
 use super::verdict::{other_gap, reasons};
 use crate::estimation::{Answer, FieldEstimate, ForceCheck, RegressedLaw, Robust};
 use crate::results::{BESIDE_CORNERS, Finding, Stretches, small_strain};
+use crate::solve::vector::largest;
 use crate::statistics::small_probability;
 use crate::units::{decimals, number};
 
@@ -177,13 +178,15 @@ fn not_explained(estimate: &FieldEstimate) -> Option<Doubt> {
     })
 }
 
-/// Noise that is no measurement's: a share of the specimen.
+/// Noise that is no measurement's: a share of the specimen and of its displacement.
 fn no_measurement(study: &MarkerStudy, estimate: &FieldEstimate) -> Option<Doubt> {
-    /// Noise over the specimen's smaller extent.
+    /// Noise over the specimen's smaller extent, and over the largest displacement.
     const NO_MEASUREMENT: f64 = 0.03;
     let (noise, [low, high]) = (estimate.noise, study.mesh.bounding_box());
     let share = noise / (high[0] - low[0]).min(high[1] - low[1]);
-    (estimate.verdict.answer != Answer::NotExplained && share > NO_MEASUREMENT).then(|| {
+    let moved = largest(&estimate.displacement);
+    let is_none = share > NO_MEASUREMENT && noise > NO_MEASUREMENT * moved;
+    (estimate.verdict.answer != Answer::NotExplained && is_none).then(|| {
         let message = format!(
             "the markers scatter by {} mm, {:.1} % of the specimen's smaller extent: markers were lost or matched wrongly",
             decimals(noise, 4),

@@ -107,9 +107,10 @@ fn has_hidden(estimate: &FieldEstimate) -> bool {
         && MarkerEstimate::scatter_by_median(&estimate.markers) < MarkerEstimate::GROSS_ERRORS
 }
 
-/// Whether outliers lie among the others as by chance: of the neighbours of one as many are outliers as of all markers, within three
-/// standard deviations.
+/// Whether outliers lie among the others as by chance: of the neighbours of one as many are outliers as of all markers, within four
+/// standard deviations: of outliers at random less than one set in a thousand lies beyond three, and of patches all do beyond ten.
 fn are_scattered(markers: &[Marker], estimate: &FieldEstimate) -> bool {
+    const DEVIATIONS: f64 = 4.0;
     let pairs = markers.iter().zip(&estimate.markers);
     let used: Vec<_> = pairs
         .filter_map(|(marker, estimate)| Some((marker.position, estimate.as_ref()?.outlier)))
@@ -126,7 +127,7 @@ fn are_scattered(markers: &[Marker], estimate: &FieldEstimate) -> bool {
     let share = count / used.len() as f64;
     // Each pair is counted from both ends.
     let deviation = (2.0 * share * (1.0 - share) / neighbours).sqrt();
-    share < MOST_SCATTERED && alike / neighbours < share + 3.0 * deviation
+    share < MOST_SCATTERED && alike / neighbours < share + DEVIATIONS * deviation
 }
 
 /// Whether there are more outliers than gross errors can be.

@@ -4,6 +4,7 @@ use super::between::{PARTS, with_cubics};
 use super::problem::MovingSheet;
 use super::solution::{ModelMotion, Motions};
 use crate::dynamics::{EnergyBalance, Instant};
+use crate::mesh::NodalField;
 use crate::results::models::CORRECTED;
 use crate::results::{
     Animation, Axis, Content, Drawing, FieldFigure, Figure, Frame, Grid, GridSeries, Line,
@@ -36,17 +37,29 @@ fn lines(models: [&ModelMotion; 2], points: impl Fn(&ModelMotion) -> Vec<[f64; 2
     models.into_iter().zip(STROKES).map(line).collect()
 }
 
+impl Motions {
+    /// The axis along which the finite elements are displaced farther.
+    pub fn axis(&self) -> usize {
+        let instants = self.elements.instants().iter();
+        let fields = instants.flat_map(|now| now.displacement.vectors());
+        let [x, y] = fields.fold([0.0_f64; 2], |most, [x, y]| {
+            [most[0].max(x.abs()), most[1].max(y.abs())]
+        });
+        usize::from(y > x)
+    }
+}
+
 impl ModelMotion {
     /// Pairs of figures of all instants.
     fn points(&self, pair: impl Fn(&Instant) -> [f64; 2]) -> Vec<[f64; 2]> {
         self.instants().iter().map(pair).collect()
     }
 
-    /// Time, displacement along x and velocity of a probe, at the instants and between them.
-    fn course(&self, probe: &Probe) -> Vec<[f64; 3]> {
+    /// Time, displacement and velocity of a probe along an axis, at the instants and between them.
+    fn course(&self, probe: &Probe, axis: usize) -> Vec<[f64; 3]> {
         let instants = self.instants().iter().map(|now| {
             let [displacement, velocity] =
-                [&now.displacement, &now.velocity].map(|field| self.at(field, probe)[0]);
+                [&now.displacement, &now.velocity].map(|field| self.at(field, probe)[axis]);
             [now.time, displacement, velocity]
         });
         with_cubics(&instants.collect::<Vec<_>>())
@@ -65,16 +78,18 @@ pub fn figures(sheet: &MovingSheet, motions: &Motions, series: &[ModelSeries]) -
     // The instants of all sheets.
     let count = common_instants(series);
     let instants = &springs.history.times()[..count];
-    let sheets = displaced(series, count.saturating_sub(1));
+    let axis = motions.axis();
+    let along = ["x", "y"][axis];
+    let sheets = displaced(series, count.saturating_sub(1), axis);
     let until = brief(instants.last().copied().unwrap_or_default());
-    let sheets = FieldFigure::new(format!("Sheets at t = {until} s"), ALONG, sheets);
+    let sheets = FieldFigure::new(format!("Sheets at t = {until} s"), ALONG[axis], sheets);
     let file = |what: &str| format!("{}_{what}.png", sheet.specimen.name);
     let mut figures = Vec::new();
     if !sheet.probes.is_empty() {
         figures.push(Figure::new(
             file("probes"),
-            "Displacement of the probes along x.",
-            probes(sheet, motions),
+            format!("Displacement of the probes along {along}."),
+            probes(sheet, motions, axis),
         ));
     }
     figures.extend([
@@ -85,7 +100,7 @@ pub fn figures(sheet: &MovingSheet, motions: &Motions, series: &[ModelSeries]) -
         ),
         Figure::new(
             file("sheets"),
-            "The sheets at the last instant of all models, with their displacement along x.",
+            format!("The sheets at the last instant of all models, with their displacement along {along}."),
             sheets,
         ),
     ]);
@@ -103,9 +118,11 @@ pub fn figures(sheet: &MovingSheet, motions: &Motions, series: &[ModelSeries]) -
     );
     figures.extend(force_figure(sheet, motions, file("force")));
     figures.extend(sheet.probes.first().map(|probe| {
-        let caption = "Velocity over displacement of the first probe along x, springs above, finite elements below; \
-                       later parts of the motion are darker.";
-        let charts = pair(phase(springs, probe), phase(elements, probe));
+        let caption = format!(
+            "Velocity over displacement of the first probe along {along}, springs above, finite elements below; later parts of the motion are \
+             darker."
+        );
+        let charts = pair(phase(springs, probe, axis), phase(elements, probe, axis));
         Figure::new(file("phase"), caption, charts)
     }));
     figures
@@ -149,9 +166,9 @@ fn force_figure(sheet: &MovingSheet, motions: &Motions, file: String) -> Option<
 }
 
 /// Velocity over displacement of a probe, part of the motion after part.
-fn phase(model: &ModelMotion, probe: &Probe) -> LineChart {
+fn phase(model: &ModelMotion, probe: &Probe, axis: usize) -> LineChart {
     const SHADES: [[u8; 3]; 4] = [[253, 174, 107], [230, 109, 59], [166, 54, 3], [60, 20, 0]];
-    let points = model.course(probe);
+    let points = model.course(probe, axis);
     // Each part ends with an instant that is kept.
     let instants = (points.len() / PARTS).div_ceil(SHADES.len()).max(1);
     let length = PARTS * instants;
@@ -177,26 +194,31 @@ fn phase(model: &ModelMotion, probe: &Probe) -> LineChart {
     )
 }
 
-fn probes(sheet: &MovingSheet, motions: &Motions) -> LineChart {
+/// How many instants of the corrected motion are marked on a curve: more of them would hide the line that they are on.
+const MARKERS: usize = 60;
+
+fn probes(sheet: &MovingSheet, motions: &Motions, axis: usize) -> LineChart {
     let mut lines = Vec::new();
     for (probe, colour) in sheet.probes.iter().zip(PALETTE.into_iter().cycle()) {
         lines.extend(motions.correction.motion.as_ref().map(|corrected| {
             let points =
-                corrected.points(|now| [now.time, corrected.at(&now.displacement, probe)[0]]);
+                corrected.points(|now| [now.time, corrected.at(&now.displacement, probe)[axis]]);
+            let points = points.iter().step_by(points.len().div_ceil(MARKERS).max(1));
+            let points: Vec<[f64; 2]> = points.copied().collect();
             let label = format!("{}, corrected", probe.name);
             Line::new(label, points, colour, Stroke::Points)
         }));
         let models = motions.models().into_iter().zip(STROKES);
         lines.extend(models.map(|(model, stroke)| {
             let points = model
-                .course(probe)
+                .course(probe, axis)
                 .into_iter()
                 .map(|[time, x, _]| [time, x]);
             let label = format!("{}, {}", probe.name, model.style().name);
             Line::new(label, points, colour, stroke)
         }));
     }
-    chart("Displacement of the probes", "time [s]", ALONG, lines)
+    chart("Displacement of the probes", "time [s]", ALONG[axis], lines)
 }
 
 fn energy(model: &ModelMotion) -> LineChart {
@@ -217,7 +239,7 @@ fn energy(model: &ModelMotion) -> LineChart {
 }
 
 /// What the pictures of the sheets show.
-const ALONG: &str = "displacement along x [mm]";
+const ALONG: [&str; 2] = ["displacement along x [mm]", "displacement along y [mm]"];
 
 /// How many instants all models have.
 fn common_instants(series: &[ModelSeries]) -> usize {
@@ -225,25 +247,25 @@ fn common_instants(series: &[ModelSeries]) -> usize {
     counts.min().unwrap_or(0)
 }
 
-/// The sheets at an instant, with their displacement along x.
-fn displaced(series: &[ModelSeries], instant: usize) -> Vec<Panel> {
-    let panel = |model: &ModelSeries| model.panel(instant, |[along, _]| along);
+/// The sheets at an instant, with their displacement along an axis.
+fn displaced(series: &[ModelSeries], instant: usize, axis: usize) -> Vec<Panel> {
+    let panel = |model: &ModelSeries| model.panel(instant, |displacement| displacement[axis]);
     series.iter().filter_map(panel).collect()
 }
 
 /// The sheets in motion: a picture that plays in every browser.
-pub fn animation(times: &[f64], series: &[ModelSeries]) -> Animation {
+pub fn animation(times: &[f64], series: &[ModelSeries], axis: usize) -> Animation {
     const FRAMES: usize = 60;
     const MILLISECONDS: u16 = 80;
     let every = times.len().div_ceil(FRAMES).max(1);
     let instants = (0..common_instants(series)).step_by(every);
     let frame = |instant: usize| Frame {
         time: times[instant],
-        panels: displaced(series, instant),
+        panels: displaced(series, instant, axis),
     };
     Animation {
         title: "Sheets in motion".into(),
-        quantity: ALONG.into(),
+        quantity: ALONG[axis].into(),
         frames: instants.map(frame).collect(),
         milliseconds: MILLISECONDS,
     }

@@ -45,7 +45,7 @@ pub fn outcome(sheet: &MovingSheet, motions: &Motions, own_error: Option<&OwnErr
     files.extend(springs_table(sheet, motions));
     let (series, times) = (motions.series(), motions.times());
     let reference = &series[series.len() - 1];
-    let animation = Drawing::Animation(animation(&times, &series));
+    let animation = Drawing::Animation(animation(&times, &series, motions.axis()));
     files.push((
         format!("{}.png", sheet.specimen.name),
         Content::Picture(animation),

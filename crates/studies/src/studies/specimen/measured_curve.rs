@@ -76,7 +76,7 @@ pub(crate) fn read_measured_curve(
     Some(MeasuredCurve { file, over, points })
 }
 
-/// What the force is over, and the points in internal units, stretches as λ − 1.
+/// What the force is over, and the points in internal units, stretches as λ − 1: a stretch nearer to 1 than to 0 at the least force is λ.
 fn curve(table: &Table) -> Result<(Signal, Vec<[f64; 2]>), Error> {
     let column = |signal| column_meaning(NAMES, signal, table);
     let mut motions = [Signal::Displacement, Signal::Stretch, Signal::Strain].into_iter();
@@ -98,10 +98,16 @@ fn curve(table: &Table) -> Result<(Signal, Vec<[f64; 2]>), Error> {
     });
     let [scale, newtons] = factors;
     let (scale, newtons) = (scale?, newtons?);
-    let rest = f64::from(u8::from(signal == Signal::Stretch));
     let rows = table.rows.iter();
-    let points = rows.map(|(row, _)| [scale * row[moved] - rest, newtons * row[force]]);
-    Ok((signal, points.collect()))
+    let points = rows.map(|(row, _)| [scale * row[moved], newtons * row[force]]);
+    let mut points: Vec<[f64; 2]> = points.collect();
+    let unloaded = points
+        .iter()
+        .min_by(|a, b| a[1].abs().total_cmp(&b[1].abs()));
+    if signal == Signal::Stretch && unloaded.is_some_and(|[stretch, _]| *stretch > 0.5) {
+        points.iter_mut().for_each(|[stretch, _]| *stretch -= 1.0);
+    }
+    Ok((signal, points))
 }
 
 /// Records an extensometer that the study does not have.

@@ -6,8 +6,8 @@ use super::results::models::Models;
 use crate::document::write_records;
 use crate::problem::GroupState;
 use crate::results::{
-    Axis, Content, Deformed, Drawing, Figure, Line, LineChart, PALETTE, Position, SheetField,
-    Stroke, from_rest, positions,
+    Axis, Content, Deformed, Drawing, Figure, Line, LineChart, Position, SheetField, Stroke,
+    from_rest, positions,
 };
 use crate::studies::file_stem;
 use crate::studies::series::{DRAWN, ModelSeries};
@@ -60,7 +60,7 @@ impl<'a> MeasuredFields<'a> {
     pub fn tables(&self) -> Vec<(String, Content)> {
         let fields = SheetField::NAMES.map(|(name, field)| head(name, field));
         let force = format!("force_{}_N", ["x", "y"][self.force_axis()]);
-        let lengths = ["length_at_rest_mm", "length_mm", "stretch"].map(str::to_owned);
+        let lengths = ["length_at_rest_mm", "length_mm", "extensometer_stretch"].map(str::to_owned);
         let coordinates = |all: &[&str]| {
             all.iter()
                 .map(|name| (*name).to_owned())
@@ -197,7 +197,12 @@ impl<'a> MeasuredFields<'a> {
         let along = specimen.along.name();
         let mut figures = Vec::new();
         if !specimen.measurements.probes.is_empty() {
-            let charts = columns.iter().map(|column| self.probe_chart(*column));
+            let probes = 0..specimen.measurements.probes.len();
+            let charts = probes.flat_map(|probe| {
+                columns
+                    .iter()
+                    .map(move |column| self.probe_chart(probe, *column))
+            });
             let caption = format!("At the probes over the {along}; computed at the markers only.");
             figures.extend(named("probes", caption, charts.collect()));
         }
@@ -225,25 +230,23 @@ impl<'a> MeasuredFields<'a> {
         figures
     }
 
-    fn probe_chart(&self, column: usize) -> LineChart {
+    fn probe_chart(&self, probe: usize, column: usize) -> LineChart {
         let field = SheetField::NAMES[column].1;
         let along = self.specimen.along;
-        let probes = self.specimen.measurements.probes.iter().enumerate();
-        let lines = probes.flat_map(|(index, probe)| {
-            let colour = PALETTE[index % PALETTE.len()];
-            self.shown().map(move |(model, stroke)| {
-                let states = self.states.iter().filter(|state| state.model == model);
-                let points = states.filter_map(|state| {
-                    let value = state.probes[index]?[column];
-                    Some([along.coordinate(self.specimen.factors[state.step]), value])
-                });
-                let label = format!("{}, {}", probe.name, self.models[model].style.name);
-                Line::new(label, points, colour, stroke)
-            })
+        let lines = self.shown().map(|(model, stroke)| {
+            let states = self.states.iter().filter(|state| state.model == model);
+            let points = states.filter_map(|state| {
+                let value = state.probes[probe]?[column];
+                Some([along.coordinate(self.specimen.factors[state.step]), value])
+            });
+            let style = self.models[model].style;
+            Line::new(style.name, points, style.colour, stroke)
         });
         let lines = lines.filter(|line| !line.points.is_empty()).collect();
+        let name = &self.specimen.measurements.probes[probe].name;
+        let title = format!("{} at {name}", field.title());
         let x = Axis::linear(along.head());
-        LineChart::new(field.title(), x, Axis::linear(field.quantity()), lines)
+        LineChart::new(title, x, Axis::linear(field.quantity()), lines)
     }
 
     /// The models that are drawn, by their numbers, the corrected field last.

@@ -107,11 +107,7 @@ fn measures(specimen: &Specimen, models: &Models) -> Vec<Measure> {
         value,
         decimals,
     };
-    let displacement = of(
-        "displacement",
-        |distance| Some(distance.displacement),
-        [3, 4],
-    );
+    let displacement = of("displacement", |one| Some(one.displacement), [3, 4]);
     let departure = of("departure", Distance::departure, [2, 3]);
     let measured = of(what, |distance| Some(distance.measured.abs()), [2, 3]);
     let is_plate = specimen.grids().is_some();

@@ -102,10 +102,10 @@ mod tests {
         };
         for stretch in [1.01, 1.5_f64, 2.0] {
             let exact = 0.1 * (stretch - stretch.powi(-2)) / (1000.0 * stretch);
-            let [found, _] = ring.pressure(stretch);
+            let [actual, _] = ring.pressure(stretch);
             assert!(
-                (found / exact - 1.0).abs() < 2e-3,
-                "{stretch} {found} {exact}"
+                (actual / exact - 1.0).abs() < 2e-3,
+                "{stretch} {actual} {exact}"
             );
         }
     }

@@ -4,28 +4,28 @@ use super::tests::read;
 
 #[test]
 fn what_is_not_stated_is_asked_for_and_never_guessed() {
-    let whole = "# test: uniaxial; stress measure: nominal\nstrain [-],stress [MPa]\n0.1,0.2";
+    let complete = "# test: uniaxial; stress measure: nominal\nstrain [-],stress [MPa]\n0.1,0.2";
     for (without, message) in [
         (
-            whole.replace("test: uniaxial; ", ""),
+            complete.replace("test: uniaxial; ", ""),
             "the test is not stated",
         ),
         (
-            whole.replace("; stress measure: nominal", ""),
+            complete.replace("; stress measure: nominal", ""),
             "the strain measure is not stated",
         ),
         (
-            whole.replace("; stress measure: nominal", "; strain measure: nominal"),
+            complete.replace("; stress measure: nominal", "; strain measure: nominal"),
             "the stress measure is not stated (write `# stress measure: nominal` at the top of the file, or give --stress nominal; it is one of nominal, cauchy, second-piola-kirchhoff)",
         ),
         (
-            whole
+            complete
                 .replace("nominal", "nominal; strain measure: nominal")
                 .replace(" [MPa]", ""),
             "the stress unit is not stated",
         ),
         (
-            whole
+            complete
                 .replace("nominal", "nominal; strain measure: nominal")
                 .replace(" [-]", ""),
             "the strain unit is not stated",
@@ -39,30 +39,30 @@ fn what_is_not_stated_is_asked_for_and_never_guessed() {
             "the strain ratio is not stated",
         ),
     ] {
-        let found = read(&without, &[]).unwrap_err();
-        assert!(found.contains(message), "{without}\n{found}");
+        let result = read(&without, &[]).unwrap_err();
+        assert!(result.contains(message), "{without}\n{result}");
     }
 }
 
 #[test]
 fn all_that_is_missing_is_told_at_once() {
-    let found = read("strain,stress\n0.1,0.2", &[]).unwrap_err();
+    let result = read("strain,stress\n0.1,0.2", &[]).unwrap_err();
     for key in ["test", "strain measure", "stress measure"] {
         assert!(
-            found.contains(&format!("the {key} is not stated")),
-            "{found}"
+            result.contains(&format!("the {key} is not stated")),
+            "{result}"
         );
     }
-    let found = read("# test: uniaxial\nextension [mm],load [N]\n1,2", &[]).unwrap_err();
+    let result = read("# test: uniaxial\nextension [mm],load [N]\n1,2", &[]).unwrap_err();
     assert_eq!(
-        found.matches("the length is not stated").count(),
+        result.matches("the length is not stated").count(),
         1,
-        "{found}"
+        "{result}"
     );
     assert_eq!(
-        found.matches("the area is not stated").count(),
+        result.matches("the area is not stated").count(),
         1,
-        "{found}"
+        "{result}"
     );
 }
 
@@ -70,16 +70,16 @@ fn all_that_is_missing_is_told_at_once() {
 fn stresses_against_the_strains_are_refused() {
     let text = "# test: uniaxial\nstretch,nominal_stress [MPa]\n1.0,0.001\n1.5,0.2";
     assert!(read(text, &[]).is_ok());
-    let found = read(&text.replace("0.2", "-0.2"), &[]).unwrap_err();
-    assert!(found.contains("opposite to the strains"), "{found}");
+    let result = read(&text.replace("0.2", "-0.2"), &[]).unwrap_err();
+    assert!(result.contains("opposite to the strains"), "{result}");
 }
 
 #[test]
 fn a_stretch_is_a_ratio_unless_it_may_be_in_percent() {
     let text = "# test: uniaxial\nstretch,nominal_stress [MPa]\n1.5,0.2";
     assert!((read(text, &[]).unwrap().observations[0].strains[0] - 0.5).abs() < 1e-15);
-    let found = read(&text.replace("1.5", "150"), &[]).unwrap_err();
-    assert!(found.contains("the strain unit is not stated"), "{found}");
+    let result = read(&text.replace("1.5", "150"), &[]).unwrap_err();
+    assert!(result.contains("the strain unit is not stated"), "{result}");
     let given = read(&text.replace("1.5", "150"), &[("strain unit", "%")]).unwrap();
     assert!((given.observations[0].strains[0] - 0.5).abs() < 1e-15);
 }

@@ -14,10 +14,10 @@ fn stresses(data: &TestData) -> Vec<f64> {
 fn rows_that_are_cut_within_a_cycle_have_the_loading_branches_that_are_whole() {
     let text = record(1.3, NAMES);
     let with = |rows: &str| read(&text, &[&SPECIMEN[..], &[("rows", rows)]].concat());
-    let whole = read(&text, &[&SPECIMEN[..], &[("cycle", "2")]].concat()).unwrap();
+    let complete = read(&text, &[&SPECIMEN[..], &[("cycle", "2")]].concat()).unwrap();
     for rows in ["84..380", "100..380", "120..380"] {
         let data = with(rows).unwrap();
-        assert_eq!(stresses(&data), stresses(&whole), "{rows}");
+        assert_eq!(stresses(&data), stresses(&complete), "{rows}");
     }
     let refused = with("110..180").unwrap_err();
     assert!(
@@ -31,11 +31,11 @@ fn rows_that_are_cut_within_a_cycle_have_the_loading_branches_that_are_whole() {
 fn a_range_of_strains_is_that_of_the_strains_that_are_fitted() {
     let text = record(1.3, NAMES);
     let with = |range: &str| read(&text, &[&SPECIMEN[..], &[("strain range", range)]].concat());
-    let whole = read(&text, &SPECIMEN).unwrap();
+    let complete = read(&text, &SPECIMEN).unwrap();
     let part = with("0..0.1").unwrap();
-    assert_eq!(part.remarks, whole.remarks);
+    assert_eq!(part.remarks, complete.remarks);
     let within = |one: &&Observation| one.strains[0] <= 0.1;
-    let expected = whole.observations.iter().filter(within);
+    let expected = complete.observations.iter().filter(within);
     let expected: Vec<f64> = expected.map(|one| one.stress).collect();
     assert_eq!(stresses(&part), expected);
     let Times::Known(times) = &part.times else {
@@ -55,10 +55,10 @@ fn rows_behind_a_rupture_are_left_out_and_told() {
     let text = format!("# test: uniaxial\nextension [mm],load [N]\n{text}");
     let data = read(&text, &SPECIMEN).unwrap();
     assert_eq!(data.observations.len(), 60);
-    let told = data.warnings[0].to_string();
+    let output = data.warnings[0].to_string();
     assert!(
-        told.contains("a.csv:63: rows behind a rupture") && told.contains(": 20"),
-        "{told}"
+        output.contains("a.csv:63: rows behind a rupture") && output.contains(": 20"),
+        "{output}"
     );
 }
 
@@ -91,10 +91,10 @@ fn rows_without_a_number_are_left_out_and_a_word_is_refused() {
     let strains: Vec<f64> = data.observations.iter().map(|one| one.strains[0]).collect();
     assert_eq!(strains.len(), 2);
     assert!((strains[1] - 0.4).abs() < 1e-15);
-    let told = data.warnings[0].to_string();
+    let output = data.warnings[0].to_string();
     assert!(
-        told.contains("without a number for strain or stress: 2"),
-        "{told}"
+        output.contains("without a number for strain or stress: 2"),
+        "{output}"
     );
     let fault = read(&(head.to_owned() + "1.1,0.1\n1.2,lost\n"), &[]).unwrap_err();
     assert!(
@@ -125,8 +125,11 @@ fn a_row_that_was_left_out_hides_no_time_that_is_missing() {
 fn strains_that_may_be_in_percent_deserve_a_word() {
     let head = "# test: uniaxial\nnominal_strain [-],nominal_stress [MPa]\n";
     let data = read(&(head.to_owned() + "10,0.1\n50,0.2\n"), &[]).unwrap();
-    let told = data.warnings[0].to_string();
-    assert!(told.contains("λ = 51") && told.contains("[%]"), "{told}");
+    let output = data.warnings[0].to_string();
+    assert!(
+        output.contains("λ = 51") && output.contains("[%]"),
+        "{output}"
+    );
     let data = read(&(head.to_owned() + "1,0.1\n5,0.2\n"), &[]).unwrap();
     assert!(data.warnings.is_empty());
 }

@@ -48,15 +48,15 @@ fn measures_and_units_are_read_from_names_head_or_command_line() {
         ),
     ] {
         let data = read(text, reading).unwrap();
-        let found = data.observations[0];
-        assert_eq!(found.axis, expected.axis);
+        let actual = data.observations[0];
+        assert_eq!(actual.axis, expected.axis);
         assert!(
-            (found.strains[0] - 0.5).abs() < 1e-15 && found.strains[1] == 0.0,
+            (actual.strains[0] - 0.5).abs() < 1e-15 && actual.strains[1] == 0.0,
             "{text}"
         );
         assert!(
-            (found.stress - expected.stress).abs() < 1e-15,
-            "{text}: {found:?}"
+            (actual.stress - expected.stress).abs() < 1e-15,
+            "{text}: {actual:?}"
         );
     }
 }
@@ -93,8 +93,8 @@ fn contradictions_and_impossible_values_are_refused_with_their_place() {
             "there is no column of stresses",
         ),
     ] {
-        let found = read(text, &[]).unwrap_err();
-        assert!(found.contains(message), "{text}\n{found}");
+        let actual = read(text, &[]).unwrap_err();
+        assert!(actual.contains(message), "{text}\n{actual}");
     }
 }
 
@@ -116,8 +116,8 @@ fn a_rare_unit_is_taken_where_it_is_stated() {
             (largest.unwrap().stress / expected - 1.0).abs() < 1e-12,
             "{unit}"
         );
-        let told = data.table.sentence();
-        assert!(told.contains(&format!("` [{unit}]")), "{told}");
+        let output = data.table.sentence();
+        assert!(output.contains(&format!("` [{unit}]")), "{output}");
     }
     assert!(
         read(force, &SPECIMEN)
@@ -193,8 +193,8 @@ fn columns_that_do_not_fit_together_are_refused() {
             "a.csv:3: the stress unit has the unknown unit",
         ),
     ] {
-        let found = read(text, &[]).unwrap_err();
-        assert!(found.contains(message), "{text}\n{found}");
+        let actual = read(text, &[]).unwrap_err();
+        assert!(actual.contains(message), "{text}\n{actual}");
     }
 }
 
@@ -263,13 +263,13 @@ fn cycles_and_slack_of_a_record_are_found_and_told() {
         "时间,位移,力\n(s),(mm),(N)",
     ] {
         let data = read(&record(1.3, names), &SPECIMEN).unwrap();
-        let told = data.remarks.join("\n");
-        assert!(told.contains("3 cycles found"), "{told}");
+        let output = data.remarks.join("\n");
+        assert!(output.contains("3 cycles found"), "{output}");
         assert!(
-            told.contains("the loading branch of the last is fitted"),
-            "{told}"
+            output.contains("the loading branch of the last is fitted"),
+            "{output}"
         );
-        assert!(told.contains("slack up to 1.3"), "{told}");
+        assert!(output.contains("slack up to 1.3"), "{output}");
         let (first, last) = (
             &data.observations[0],
             &data.observations[data.observations.len() - 1],
@@ -322,16 +322,16 @@ fn the_cycle_and_the_zero_can_be_chosen() {
         ("zero", "900 N", "does not pass the stated zero"),
         ("area", "10 mm^2", "width or thickness too"),
     ] {
-        let told = with(&[(key, value)]).unwrap_err();
-        assert!(told.contains(message), "{told}");
+        let output = with(&[(key, value)]).unwrap_err();
+        assert!(output.contains(message), "{output}");
     }
-    let told = read(&text, &[("length", "20 mm")]).unwrap_err();
+    let output = read(&text, &[("length", "20 mm")]).unwrap_err();
     assert!(
-        told.contains("the area is not stated") && told.contains("width and thickness"),
-        "{told}"
+        output.contains("the area is not stated") && output.contains("width and thickness"),
+        "{output}"
     );
-    let told = read(&text, &SPECIMEN[..2]).unwrap_err();
-    assert!(told.contains("the thickness is not stated"), "{told}");
+    let output = read(&text, &SPECIMEN[..2]).unwrap_err();
+    assert!(output.contains("the thickness is not stated"), "{output}");
     let strains =
         "# test: uniaxial; zero: 1 mm\nstretch [-],nominal_stress [MPa]\n1.1,0.1\n1.2,0.2\n";
     assert!(
