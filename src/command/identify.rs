@@ -136,13 +136,8 @@ pub fn run(options: Options) -> Outcome {
     tell_files(&files);
     print_report(|| json)?;
     warn(warnings.as_slice());
-    warn_words(
-        identification
-            .verdict
-            .doubts
-            .iter()
-            .chain(&identification.warnings),
-    );
+    let doubts = identification.verdict.doubts.iter();
+    warn_words(doubts.chain(&identification.warnings));
     print(&format!(
         "{}written: {} with .png and .json\n",
         message(&identification, &recording, &path),

@@ -54,11 +54,8 @@ impl Aggregates {
             count += 1;
         }
         let roots = of.clone();
-        for (row, aggregate) in of
-            .iter_mut()
-            .enumerate()
-            .filter(|(_, aggregate)| **aggregate == NONE)
-        {
+        let open = of.iter_mut().enumerate();
+        for (row, aggregate) in open.filter(|(_, aggregate)| **aggregate == NONE) {
             let near = strong(row).filter(|(other, _)| roots[*other] != NONE);
             let nearest = near.fold((NONE, 0.0), |best, (other, strength)| {
                 let better = strength > best.1;

@@ -179,18 +179,17 @@ const EXPLANATION: &str = "Explained: the residuals of the markers are white noi
 
 /// The verdict on every frame, and what would explain the last one that is not.
 pub fn blocks(study: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> {
-    let is_correlated = estimates
-        .iter()
-        .any(|one| one.verdict.correlation.is_some());
-    let has_reasons = estimates.iter().any(|one| !one.verdict.reasons.is_empty());
+    let mut verdicts = estimates.iter().map(|estimate| &estimate.verdict);
+    let is_correlated = verdicts
+        .clone()
+        .any(|verdict| verdict.correlation.is_some());
+    let has_reasons = verdicts.any(|verdict| !verdict.reasons.is_empty());
     let of = |estimate: &FieldEstimate, words: fn(NoiseCorrelation) -> String| {
         estimate.verdict.correlation.map_or(String::new(), words)
     };
     let table = Table::of(study.frames_with(estimates))
         .column("frame", |(frame, _)| frame.number.to_string())
-        .column("verdict", |(_, estimate)| {
-            estimate.verdict.answer.words().to_owned()
-        })
+        .column("verdict", |(_, one)| one.verdict.answer.words().to_owned())
         .column_if(is_correlated, "correlation length [mm]", |(_, estimate)| {
             of(estimate, |one| decimals(one.length, 4))
         })
@@ -231,9 +230,7 @@ pub fn blocks(study: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> {
         });
         let table = Table::of(as_it_is.into_iter().chain(trials))
             .column("alternative", |[words, ..]| words.clone())
-            .column("residual without outliers [mm]", |[_, residual, _]| {
-                residual.clone()
-            })
+            .column("residual without outliers [mm]", |[_, rms, _]| rms.clone())
             .column("probability", |[.., probability]| probability.clone());
         blocks.push(table.block());
         blocks.extend(finer_mesh(study, &estimate.verdict).map(Block::paragraph));

@@ -134,8 +134,7 @@ fn problem(
         })
     });
     let laws = report::ranked(study, joint).into_iter().map(|law| {
-        let [error, residual, criterion] =
-            law.figures.map_or([None; 3], |figures| figures.map(Some));
+        let [error, residual, criterion] = law.figures.map_or([None; 3], |all| all.map(Some));
         json!({
             "card": law.name,
             "parameters": law.parameters,
