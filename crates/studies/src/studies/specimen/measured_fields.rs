@@ -244,7 +244,7 @@ impl<'a> MeasuredFields<'a> {
         });
         let lines = lines.filter(|line| !line.points.is_empty()).collect();
         let name = &self.specimen.measurements.probes[probe].name;
-        let title = format!("{} at {name}", field.title());
+        let title = format!("{}: {name}", field.title());
         let x = Axis::linear(along.head());
         LineChart::new(title, x, Axis::linear(field.quantity()), lines)
     }
