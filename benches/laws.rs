@@ -44,13 +44,13 @@ fn main() {
         };
         Some((name.to_owned(), Arc::clone(&law).with_volume(volume)?, law))
     });
-    let own = samples::changing_volume().into_iter();
-    let own = own.map(|card| (card.law_name, card.law, Arc::clone(&neo_hooke)));
+    let compressible = samples::changing_volume().into_iter();
+    let compressible = compressible.map(|card| (card.law_name, card.law, Arc::clone(&neo_hooke)));
     println!(
         "{:<26} {:>9} {:>9} {:>9} {:>9} {:>7} {:>7}",
         "ns a point", "stress", "volume", "tangent", "volume", "ratio", "ratio"
     );
-    let mut pairs: Vec<(String, Law, Law)> = split.chain(own).collect();
+    let mut pairs: Vec<(String, Law, Law)> = split.chain(compressible).collect();
     for (name, sheet, law) in &pairs {
         let mut best = [f64::INFINITY; 4];
         for _ in 0..ROUNDS {

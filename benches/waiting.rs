@@ -198,9 +198,9 @@ fn main() {
     let argument = |word: &str| {
         let word = word.replace('_', if word.contains("FORCE") { " " } else { "_" });
         let word = word.replace("FORCE", &truth.force.to_string());
-        let own = at(&word);
-        if own.exists() {
-            own.display().to_string()
+        let file = at(&word);
+        if file.exists() {
+            file.display().to_string()
         } else {
             word
         }

@@ -51,14 +51,14 @@ pub fn exponent(points: &[[f64; 2]]) -> f64 {
 
 /// Of some runs, as time and error, those that no other is both quicker and more accurate than, from the most accurate on.
 pub fn best<T>(runs: impl Iterator<Item = T>, time_and_error: impl Fn(&T) -> [f64; 2]) -> Vec<T> {
-    let mut own: Vec<T> = runs.collect();
-    own.sort_by(|a, b| time_and_error(a)[1].total_cmp(&time_and_error(b)[1]));
+    let mut selected: Vec<T> = runs.collect();
+    selected.sort_by(|a, b| time_and_error(a)[1].total_cmp(&time_and_error(b)[1]));
     let mut quickest = f64::INFINITY;
-    own.retain(|run| {
+    selected.retain(|run| {
         let seconds = time_and_error(run)[0];
         let quicker = seconds < quickest;
         quickest = quickest.min(seconds);
         quicker
     });
-    own
+    selected
 }

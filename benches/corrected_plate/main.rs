@@ -22,12 +22,12 @@ mod columns;
 #[path = "../common/lines.rs"]
 mod lines;
 mod measure;
+mod method;
 mod opponent;
 mod reference;
 mod states;
 mod table;
 mod verdict;
-mod way;
 
 use std::path::Path;
 use std::process::ExitCode;
@@ -40,10 +40,10 @@ use peak_alloc::PeakAlloc;
 use rayon::ThreadPoolBuilder;
 
 use measure::Bench;
+use method::Layout;
 use reference::{PUBLISHED_FORCE, Reference};
 use table::Row;
 use verdict::Verdicts;
-use way::Layout;
 
 #[global_allocator]
 static MEMORY: PeakAlloc = PeakAlloc;
@@ -134,7 +134,7 @@ fn bench(quick: bool, equal_accuracy: bool) -> Result<usize, Error> {
     let reference = pools[1].install(|| Reference::new(&problem, STRETCH))?;
     println!(
         "reference: force {:.6} N (published {PUBLISHED_FORCE} N), own departure below {:.1e} %",
-        reference.force, reference.own_percent
+        reference.force, reference.error_percent
     );
     let bench = Bench {
         problem: &problem,
@@ -150,9 +150,9 @@ fn bench(quick: bool, equal_accuracy: bool) -> Result<usize, Error> {
     } else {
         usize::MAX
     }) {
-        let own = bench.grid(layout, corrected)?;
-        own.iter().for_each(table::print_run);
-        runs.extend(own);
+        let measured = bench.grid(layout, corrected)?;
+        measured.iter().for_each(table::print_run);
+        runs.extend(measured);
     }
     let rows = Row::all(&runs);
     let columns: Vec<_> = rows.iter().map(Row::columns).collect();

@@ -9,13 +9,13 @@ use gelbench_corrector::corrector::climb::{Field, Grid};
 use rayon::ThreadPool;
 
 use super::MEMORY;
+use super::method::{Layout, Method, Solution, go};
 use super::opponent::{Guess, Opponent};
 use super::reference::{Reference, relative_percent};
-use super::way::{Found, Layout, Way, go};
 
 /// A way measured on one grid.
 pub struct Run {
-    pub way: Way,
+    pub method: Method,
     pub layout: Layout,
     pub nodes: usize,
     pub threads: usize,
@@ -39,12 +39,12 @@ pub struct Run {
 
 impl Run {
     /// Whether it went a way, on one thread.
-    pub fn is(&self, way: Way) -> bool {
-        self.way == way && self.threads == 1
+    pub fn is(&self, method: Method) -> bool {
+        self.method == method && self.threads == 1
     }
 
     /// Keeps the shorter times.
-    fn improve(&mut self, actual: &Found) {
+    fn improve(&mut self, actual: &Solution) {
         let evaluation = (self.seconds / self.work_units).min(actual.evaluation);
         self.seconds = self.seconds.min(actual.seconds);
         self.work_units = self.seconds / evaluation;
@@ -92,12 +92,12 @@ impl Bench<'_> {
         let contestants = contestants(layout, corrected, &exact);
         let mut runs = Vec::new();
         let mut fields: Vec<Field> = Vec::new();
-        for (way, threads, error) in &contestants {
+        for (method, threads, error) in &contestants {
             let before = MEMORY.current_usage();
             MEMORY.reset_peak_usage();
-            let actual = self.go(*way, layout, *threads, *error)?;
+            let actual = self.go(*method, layout, *threads, *error)?;
             let bytes = (MEMORY.peak_usage() - before) as f64;
-            runs.push(self.run(*way, layout, *threads, &actual, bytes));
+            runs.push(self.run(*method, layout, *threads, &actual, bytes));
             fields.push(actual.field);
         }
         compare(&mut runs, &fields, &exact, self.stretch);
@@ -106,8 +106,14 @@ impl Bench<'_> {
         Ok(runs)
     }
 
-    fn go(&self, way: Way, layout: Layout, threads: usize, error: f64) -> Result<Found, Error> {
-        self.pools[threads - 1].install(|| go(way, self.problem, layout, self.stretch, error))
+    fn go(
+        &self,
+        method: Method,
+        layout: Layout,
+        threads: usize,
+        error: f64,
+    ) -> Result<Solution, Error> {
+        self.pools[threads - 1].install(|| go(method, self.problem, layout, self.stretch, error))
     }
 
     fn exact(&self, layout: Layout, scheme: DifferenceScheme) -> Exact {
@@ -123,10 +129,17 @@ impl Bench<'_> {
         }
     }
 
-    fn run(&self, way: Way, layout: Layout, threads: usize, actual: &Found, bytes: f64) -> Run {
+    fn run(
+        &self,
+        method: Method,
+        layout: Layout,
+        threads: usize,
+        actual: &Solution,
+        bytes: f64,
+    ) -> Run {
         let nodes = actual.grid.nodes();
         Run {
-            way,
+            method,
             layout,
             nodes,
             threads,
@@ -145,16 +158,16 @@ impl Bench<'_> {
     }
 
     /// Goes all ways again, in turns, and keeps the shortest times.
-    fn repeat(&self, runs: &mut [Run], contestants: &[(Way, usize, f64)]) -> Result<(), Error> {
+    fn repeat(&self, runs: &mut [Run], contestants: &[(Method, usize, f64)]) -> Result<(), Error> {
         let start = Instant::now();
         for turn in 0..TURNS.end {
             if turn >= TURNS.start && start.elapsed() > ENOUGH {
                 break;
             }
-            for (run, (way, threads, error)) in runs.iter_mut().zip(contestants) {
+            for (run, (method, threads, error)) in runs.iter_mut().zip(contestants) {
                 let begin = Instant::now();
                 while begin.elapsed() < TURN {
-                    run.improve(&self.go(*way, run.layout, *threads, *error)?);
+                    run.improve(&self.go(*method, run.layout, *threads, *error)?);
                 }
             }
         }
@@ -165,12 +178,12 @@ impl Bench<'_> {
 /// Compares the fields of the climb with the solutions of the same equations, and with those of one thread.
 fn compare(runs: &mut [Run], fields: &[Field], exact: &[Exact], stretch: f64) {
     for exact in exact {
-        let climb = Way::Climb(exact.scheme);
-        let Some(first) = runs.iter().position(|run| run.way == climb) else {
+        let climb = Method::Climb(exact.scheme);
+        let Some(first) = runs.iter().position(|run| run.method == climb) else {
             continue;
         };
         for (run, field) in runs.iter_mut().zip(fields) {
-            if run.way == climb {
+            if run.method == climb {
                 run.difference_percent =
                     relative_percent(&exact.grid, field, &exact.field, stretch);
                 run.same_bits = *field == fields[first];
@@ -181,21 +194,21 @@ fn compare(runs: &mut [Run], fields: &[Field], exact: &[Exact], stretch: f64) {
 
 /// The ways on a grid, with threads and the grid's error: on equal cells the climb by one and two threads. The bicubic climb goes on
 /// every grid that suits it.
-fn contestants(layout: Layout, corrected: bool, exact: &[Exact]) -> Vec<(Way, usize, f64)> {
+fn contestants(layout: Layout, corrected: bool, exact: &[Exact]) -> Vec<(Method, usize, f64)> {
     let mut all = Vec::new();
     for Exact { scheme, error, .. } in exact {
         let scheme = *scheme;
         let corrected = corrected || scheme == DifferenceScheme::Bicubic;
         if corrected {
-            all.push((Way::Climb(scheme), 1, *error));
+            all.push((Method::Climb(scheme), 1, *error));
         }
         if corrected && layout.grading == 1.0 {
-            all.push((Way::Climb(scheme), 2, *error));
+            all.push((Method::Climb(scheme), 2, *error));
         }
     }
     for Exact { scheme, error, .. } in exact {
         for guess in [Guess::Affine, Guess::Nested] {
-            all.push((Way::FiniteElements(*scheme, guess), 1, *error));
+            all.push((Method::FiniteElements(*scheme, guess), 1, *error));
         }
     }
     all

@@ -21,7 +21,7 @@ use gelbench_corrector::corrector::climb::{Field, Grid};
 use gelbench_mechanics::problem::sheet_energy::SheetEnergy;
 use gelbench_mechanics::solve::{Assembly, Cholesky};
 
-use super::way::Layout;
+use super::method::Layout;
 
 /// Where the iteration begins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

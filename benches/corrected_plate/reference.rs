@@ -21,14 +21,14 @@ pub struct Reference {
     /// Force on the moving grip in N.
     pub force: f64,
     /// Departure of half as many elements from this one in percent: more than this one's own error.
-    pub own_percent: f64,
+    pub error_percent: f64,
 }
 
 impl Reference {
     pub fn new(problem: &ClampedPlate, stretch: f64) -> Result<Self, Error> {
         let [fine, coarse] = ELEMENTS.map(|elements| Self::on(problem, stretch, elements));
         let (mut fine, coarse) = (fine?, coarse?);
-        fine.own_percent = fine.departure_percent(&coarse.grid, &coarse.field);
+        fine.error_percent = fine.departure_percent(&coarse.grid, &coarse.field);
         Ok(fine)
     }
 
@@ -45,7 +45,7 @@ impl Reference {
             force: climbed.force,
             field: climbed.field,
             stretch,
-            own_percent: f64::NAN,
+            error_percent: f64::NAN,
         })
     }
 

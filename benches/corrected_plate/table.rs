@@ -8,8 +8,8 @@ use gelbench_report::results::{Axis, Line, LineChart, PALETTE, Stroke};
 use super::columns::{Columns, number, ratio};
 use super::lines;
 use super::measure::Run;
+use super::method::{Method, element_name, scheme_name};
 use super::opponent::Guess;
-use super::way::{Way, element_name, scheme_name};
 
 /// The climb on one grid beside its opponents; times in s.
 pub struct Row<'a> {
@@ -28,8 +28,8 @@ const GUESSES: [Guess; 2] = [Guess::Affine, Guess::Nested];
 
 impl<'a> Row<'a> {
     pub fn all(runs: &'a [Run]) -> Vec<Self> {
-        let climbs = runs.iter().filter_map(|run| match run.way {
-            Way::Climb(scheme) => Some((run, scheme)),
+        let climbs = runs.iter().filter_map(|run| match run.method {
+            Method::Climb(scheme) => Some((run, scheme)),
             _ => None,
         });
         climbs
@@ -38,17 +38,17 @@ impl<'a> Row<'a> {
     }
 
     fn new(runs: &'a [Run], climb: &'a Run, scheme: DifferenceScheme) -> Self {
-        let here = |way: Way| {
+        let here = |method: Method| {
             runs.iter()
-                .find(|run| run.way == way && run.layout == climb.layout)
+                .find(|run| run.method == method && run.layout == climb.layout)
         };
         let elements = |guess: Guess| {
-            let result = here(Way::FiniteElements(scheme, guess));
+            let result = here(Method::FiniteElements(scheme, guess));
             result.expect("finite elements are measured on every grid")
         };
         let cheapest = |guess: Guess| {
             let as_accurate = runs.iter().filter(|run| {
-                matches!(run.way, Way::FiniteElements(_, own) if own == guess)
+                matches!(run.method, Method::FiniteElements(_, start) if start == guess)
                     && run.departure_percent <= EQUAL * climb.departure_percent
             });
             as_accurate.min_by(|a, b| a.seconds.total_cmp(&b.seconds))
@@ -76,8 +76,8 @@ impl<'a> Row<'a> {
     pub fn columns(&self) -> Columns {
         let climb = self.climb;
         let equal = self.equal_accuracy[0];
-        let mesh = equal.map_or("-".to_owned(), |run| match run.way {
-            Way::FiniteElements(scheme, _) => {
+        let mesh = equal.map_or("-".to_owned(), |run| match run.method {
+            Method::FiniteElements(scheme, _) => {
                 format!("{} {}", element_name(scheme), run.layout)
             }
             _ => unreachable!("finite elements"),
@@ -136,7 +136,7 @@ pub fn print_run(run: &Run) {
         "{:>8} nodes  {:<12} {:<38} {} thread{}  {:>10.5} s  {:>2} iterations  departure {:.2e} %  force {:.6} N ({:.1e} %)",
         run.nodes,
         run.layout.to_string(),
-        run.way.name(),
+        run.method.name(),
         run.threads,
         if run.threads == 1 { " " } else { "s" },
         run.seconds,
@@ -154,17 +154,18 @@ pub fn picture(runs: &[Run]) -> Result<Vec<u8>, output::PictureFault> {
         chart(
             "Plate at 100 %, equal cells: time against nodes",
             "nodes",
-            |way| {
-                let own = runs.iter().filter(|run| run.is(way) && equal(run));
-                own.map(|run| [run.nodes as f64, run.seconds]).collect()
+            |method| {
+                let chosen = runs.iter().filter(|run| run.is(method) && equal(run));
+                chosen.map(|run| [run.nodes as f64, run.seconds]).collect()
             },
         ),
         chart(
             "Best of equal and graded grids: time against error",
             "departure from affine: error [%]",
-            |way| {
-                let own = best(runs, |run| run.is(way));
-                own.iter()
+            |method| {
+                let chosen = best(runs, |run| run.is(method));
+                chosen
+                    .iter()
                     .map(|run| [run.departure_percent, run.seconds])
                     .collect()
             },
@@ -172,19 +173,19 @@ pub fn picture(runs: &[Run]) -> Result<Vec<u8>, output::PictureFault> {
     ]))
 }
 
-fn chart(title: &str, x: &str, points: impl Fn(Way) -> Vec<[f64; 2]>) -> (LineChart, u32) {
-    let ways = [
-        Way::Climb(DifferenceScheme::Gauss),
-        Way::Climb(DifferenceScheme::Biquadratic),
-        Way::Climb(DifferenceScheme::Bicubic),
-        Way::FiniteElements(DifferenceScheme::Gauss, Guess::Nested),
-        Way::FiniteElements(DifferenceScheme::Biquadratic, Guess::Nested),
-        Way::FiniteElements(DifferenceScheme::Bicubic, Guess::Nested),
+fn chart(title: &str, x: &str, points: impl Fn(Method) -> Vec<[f64; 2]>) -> (LineChart, u32) {
+    let methods = [
+        Method::Climb(DifferenceScheme::Gauss),
+        Method::Climb(DifferenceScheme::Biquadratic),
+        Method::Climb(DifferenceScheme::Bicubic),
+        Method::FiniteElements(DifferenceScheme::Gauss, Guess::Nested),
+        Method::FiniteElements(DifferenceScheme::Biquadratic, Guess::Nested),
+        Method::FiniteElements(DifferenceScheme::Bicubic, Guess::Nested),
     ];
-    let line = |(way, colour): (&Way, &[u8; 3])| {
-        Line::new(way.name(), points(*way), *colour, Stroke::Marked)
+    let line = |(method, colour): (&Method, &[u8; 3])| {
+        Line::new(method.name(), points(*method), *colour, Stroke::Marked)
     };
-    let lines = ways.iter().zip(&PALETTE).map(line).collect();
+    let lines = methods.iter().zip(&PALETTE).map(line).collect();
     let axes = [x, "time [s]"].map(Axis::logarithmic);
     let [x, y] = axes;
     (LineChart::new(title, x, y, lines), 480)
@@ -192,6 +193,6 @@ fn chart(title: &str, x: &str, points: impl Fn(Way) -> Vec<[f64; 2]>) -> (LineCh
 
 /// The runs that no other is both quicker and more accurate than, from the most accurate on.
 pub fn best(runs: &[Run], of: impl Fn(&Run) -> bool) -> Vec<&Run> {
-    let own = runs.iter().filter(|run| of(run));
-    lines::best(own, |run| [run.seconds, run.departure_percent])
+    let chosen = runs.iter().filter(|run| of(run));
+    lines::best(chosen, |run| [run.seconds, run.departure_percent])
 }

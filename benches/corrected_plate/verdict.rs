@@ -2,11 +2,11 @@
 
 use super::lines::{Lines, exponent};
 use super::measure::{Run, SCHEMES};
+use super::method::{Method, scheme_name};
 use super::opponent::Guess;
 use super::reference::{PUBLISHED_FORCE, Reference};
 use super::states::Frames;
 use super::table::{Row, best};
-use super::way::{Way, scheme_name};
 use gelbench::corrector::DifferenceScheme;
 
 /// Departures from affine in percent at which times are compared, and how many times faster the climb has to be.
@@ -20,7 +20,7 @@ fn is_equal(row: &Row) -> bool {
 /// All lines.
 pub struct Verdicts {
     lines: Lines,
-    own_percent: f64,
+    error_percent: f64,
 }
 
 /// Nodes between which the exponent of time is fitted; the largest grid has a little more than a million.
@@ -31,7 +31,7 @@ impl Verdicts {
         let deviation = 100.0 * (reference.force / PUBLISHED_FORCE - 1.0).abs();
         let mut verdicts = Self {
             lines: Lines::default(),
-            own_percent: reference.own_percent,
+            error_percent: reference.error_percent,
         };
         let text = format!(
             "force of the reference: {:.6} N, {deviation:.1e} % from the published {PUBLISHED_FORCE} N (at most 1e-4 %)",
@@ -76,8 +76,8 @@ impl Verdicts {
         let one: Vec<&Row> = rows.iter().filter(|row| row.climb.threads == 1).collect();
         let at = |cells: usize| -> Vec<&Row> {
             let layout = |row: &&&Row| row.climb.layout.cells[0] == cells && is_equal(row);
-            let own = one.iter().filter(layout);
-            own.copied().collect()
+            let chosen = one.iter().filter(layout);
+            chosen.copied().collect()
         };
         for (cells, limit, name) in [
             (600, 20.0, "600 × 200 cells"),
@@ -94,10 +94,10 @@ impl Verdicts {
             }
         }
         let of = |scheme: DifferenceScheme| -> Vec<&Row> {
-            let own = one
+            let chosen = one
                 .iter()
                 .filter(|row| row.scheme == scheme && is_equal(row));
-            own.copied().collect()
+            chosen.copied().collect()
         };
         for scheme in SCHEMES {
             self.exponent(scheme, &of(scheme));
@@ -131,13 +131,13 @@ impl Verdicts {
             false,
             |row| row.climb.difference_percent / row.same_nodes[0].departure_percent,
         );
-        let own = self.own_percent;
+        let reference_error = self.error_percent;
         self.worst(
             "error of the reference over that of a row",
             &one,
             0.1,
             false,
-            |row| own / row.climb.departure_percent,
+            |row| reference_error / row.climb.departure_percent,
         );
         let same = rows.iter().all(|row| row.climb.same_bits);
         self.lines
@@ -146,9 +146,9 @@ impl Verdicts {
 
     /// The quickest climb of some accuracy beside the quickest finite elements, each on the best of all its grids.
     pub fn equal_accuracy(&mut self, runs: &[Run]) {
-        let is_climb = |run: &Run| matches!(run.way, Way::Climb(_)) && run.threads == 1;
+        let is_climb = |run: &Run| matches!(run.method, Method::Climb(_)) && run.threads == 1;
         let climbs = best(runs, is_climb);
-        let elements = best(runs, |run| matches!(run.way, Way::FiniteElements(..)));
+        let elements = best(runs, |run| matches!(run.method, Method::FiniteElements(..)));
         println!();
         let mut worst: Option<(f64, f64)> = None;
         for accuracy in ACCURACIES {
@@ -165,10 +165,10 @@ impl Verdicts {
             let ratio = other.seconds / climb.seconds;
             println!(
                 "at most {accuracy:.0e} %: {} on {}, {:.2} ms; {} on {}, {:.2} ms: {ratio:.2} times faster",
-                climb.way.name(),
+                climb.method.name(),
                 climb.layout,
                 1e3 * climb.seconds,
-                other.way.name(),
+                other.method.name(),
                 other.layout,
                 1e3 * other.seconds,
             );

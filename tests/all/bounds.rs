@@ -26,7 +26,7 @@ fn study(name: &str, changes: &[(&str, &str)]) -> String {
 }
 
 /// What a command says about a file beside it; it must be done soon.
-fn told(file: &str, text: &str, arguments: &[&str], code: i32) -> String {
+fn output_text(file: &str, text: &str, arguments: &[&str], code: i32) -> String {
     let folder = TempDir::new().unwrap();
     fs::write(folder.path().join(file), text).unwrap();
     let start = Instant::now();
@@ -85,7 +85,7 @@ fn too_large_studies_are_refused_with_key_estimate_and_remedy() {
         ),
     ];
     for (text, parts) in cases {
-        let printed = told("s.toml", &text, &["check", "s.toml"], 2);
+        let printed = output_text("s.toml", &text, &["check", "s.toml"], 2);
         for part in parts.iter().chain(&["--allow-large"]) {
             assert!(printed.contains(part), "{part}: {printed}");
         }
@@ -96,7 +96,7 @@ fn too_large_studies_are_refused_with_key_estimate_and_remedy() {
 fn a_motion_that_turns_out_to_take_too_many_steps_ends_at_once() {
     let stiff = "\n[mass_spring.stiffness]\nkind = \"polynomial\"\ncoefficients = [\"1e9 MPa\"]\n";
     let text = study("released_plate.toml", &[]) + stiff;
-    let printed = told("s.toml", &text, &["run", "s.toml"], 3);
+    let printed = output_text("s.toml", &text, &["run", "s.toml"], 3);
     for part in ["steps of at most", "1.0e7 are allowed", "softer springs"] {
         assert!(printed.contains(part), "{part}: {printed}");
     }
@@ -140,14 +140,14 @@ fn more_markers_than_memory_holds_are_refused_with_estimate_and_remedy() {
 #[test]
 fn large_studies_pass_where_one_says_so_and_impossible_ones_never() {
     let text = "[plate]\ncells = [6000, 2000]\n";
-    let printed = told("s.toml", text, &["check", "s.toml", "--allow-large"], 0);
+    let printed = output_text("s.toml", text, &["check", "s.toml", "--allow-large"], 0);
     assert!(printed.contains("no faults"), "{printed}");
     for command in [
         &["run", "s.toml"][..],
         &["export", "s.toml", "--to", "abaqus"],
         &["compare", "s.toml", "s.toml"],
     ] {
-        let printed = told("s.toml", text, command, 2);
+        let printed = output_text("s.toml", text, command, 2);
         assert!(
             printed.contains("or use --allow-large"),
             "{command:?}: {printed}"
@@ -161,7 +161,7 @@ fn large_studies_pass_where_one_says_so_and_impossible_ones_never() {
             ("interval", "\"1e3 s\""),
         ],
     );
-    let printed = told("s.toml", &text, &["check", "s.toml", "--allow-large"], 2);
+    let printed = output_text("s.toml", &text, &["check", "s.toml", "--allow-large"], 2);
     assert!(
         printed.contains("time steps") && !printed.contains("--allow-large"),
         "{printed}"
@@ -178,17 +178,17 @@ fn sizes_lie_between_a_nanometre_and_a_kilometre() {
         "0.1 nm",
     ] {
         let text = study("dog_bone.toml", &[("length", &format!("\"{length}\""))]);
-        let printed = told("s.toml", &text, &["check", "s.toml"], 2);
+        let printed = output_text("s.toml", &text, &["check", "s.toml"], 2);
         assert!(
             printed.contains("specimen.length") && printed.contains(length),
             "{length}: {printed}"
         );
     }
     let text = study("dog_bone.toml", &[("thickness", "\"1e-60 mm\"")]);
-    let printed = told("s.toml", &text, &["check", "s.toml"], 2);
+    let printed = output_text("s.toml", &text, &["check", "s.toml"], 2);
     assert!(printed.contains("specimen.thickness"), "{printed}");
     let text = study("strip_with_hole.toml", &[("hole_diameter", "\"2 nm\"")]);
-    let printed = told("s.toml", &text, &["check", "s.toml"], 2);
+    let printed = output_text("s.toml", &text, &["check", "s.toml"], 2);
     assert!(
         printed.contains("differ by a factor of more than 100,000"),
         "{printed}"
@@ -214,7 +214,7 @@ fn grid(factor: &str) -> String {
 fn markers_and_outlines_measure_what_specimens_do() {
     let usual = ["--material", "pva-10", "--thickness", "2 mm"];
     for factor in ["e-50", "e70", "e20", "e-20"] {
-        let printed = told(
+        let printed = output_text(
             "m.csv",
             &grid(factor),
             &[&["correct", "m.csv"], &usual[..]].concat(),
@@ -229,14 +229,14 @@ fn markers_and_outlines_measure_what_specimens_do() {
         let field = root().join("examples/measured_plate.csv");
         let outline = format!("x [mm],y [mm]\n{corners}");
         let more = ["correct", field.to_str().unwrap(), "--outline", "o.csv"];
-        let printed = told("o.csv", &outline, &[&more[..], &usual].concat(), 2);
+        let printed = output_text("o.csv", &outline, &[&more[..], &usual].concat(), 2);
         assert!(
             printed.contains("must measure 1 nm to 1 km"),
             "{corners}: {printed}"
         );
     }
     let many = [&["correct", "m.csv", "--cell-size", "50 um"], &usual[..]].concat();
-    let printed = told("m.csv", &grid(""), &many, 2);
+    let printed = output_text("m.csv", &grid(""), &many, 2);
     assert!(
         printed.contains("cells, and 1,000,000 are allowed")
             && printed.contains("choose a larger --cell-size, or use --allow-large"),
@@ -248,7 +248,7 @@ fn markers_and_outlines_measure_what_specimens_do() {
 fn a_field_on_one_cell_is_corrected() {
     let cell = "# vtk DataFile Version 3.0\nx\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 float\n0 0 0\n10 0 0\n10 10 0\n0 10 0\n\
                 CELLS 1 5\n4 0 1 2 3\nCELL_TYPES 1\n9\nPOINT_DATA 4\nVECTORS u float\n0 0 0\n1 0 0\n1 0 0\n0 0 0\n";
-    let printed = told(
+    let printed = output_text(
         "one.vtk",
         cell,
         &[

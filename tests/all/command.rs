@@ -44,8 +44,8 @@ fn the_pva_plate_study_reaches_its_accuracy() {
         assert!(number(step, &["corrected", "measured_percent"]).abs() <= 0.2);
         assert!(number(step, &["corrected", "displacement_correction_percent"]) >= 95.0);
         assert!(number(step, &["mass_spring", "departure_percent"]) > 20.0);
-        let own = number(step, &["finite_element", "measured_discretisation_percent"]);
-        assert!(own < 0.01, "{own}");
+        let measured = number(step, &["finite_element", "measured_discretisation_percent"]);
+        assert!(measured < 0.01, "{measured}");
         let actual = number(step, &["finite_element", "force_N"]);
         assert!((actual / force - 1.0).abs() < 1e-5, "{actual} {force}");
         let actual = number(step, &["finite_element", "width_mm"]);
@@ -198,10 +198,10 @@ fn judgements(report: &Value) -> Vec<&str> {
 /// Q2 elements on equal cells are the biquadratic scheme on a lattice of twice as many: deviation 0, whatever the error is.
 #[test]
 fn a_plate_compared_with_itself_is_not_judged() {
-    let own = SMALL.replace("cells = [24, 8]", "cells = [12, 4]\ngrading = 1.0");
-    let own = own.replacen("cells = [12, 4]", "cells = [24, 8]", 1);
-    let own = format!("{own}[corrector]\ngrading = 1.0\n");
-    let folder = folder_with(&own);
+    let study = SMALL.replace("cells = [24, 8]", "cells = [12, 4]\ngrading = 1.0");
+    let study = study.replacen("cells = [12, 4]", "cells = [24, 8]", 1);
+    let study = format!("{study}[corrector]\ngrading = 1.0\n");
+    let folder = folder_with(&study);
     let done = gelbench(folder.path(), &["run", "small.toml"]).code(1);
     let printed = words(&done.get_output().stdout);
     assert_eq!(printed.matches("cannot be judged").count(), 4, "{printed}");
@@ -338,10 +338,10 @@ fn the_grips_forces_are_in_balance_and_the_report_says_so() {
     for model in ["mass_spring", "corrected", "finite_element"] {
         let grips = number(&report, &["balance", "models", model, "unbalanced"]);
         assert!(grips < 1e-9, "{model}: {grips}");
-        let left = number(&report, &["balance", "models", model, "free_nodes"]);
+        let residual = number(&report, &["balance", "models", model, "free_nodes"]);
         assert!(
-            left < if model == "corrected" { 1e-3 } else { 1e-9 },
-            "{model}: {left}"
+            residual < if model == "corrected" { 1e-3 } else { 1e-9 },
+            "{model}: {residual}"
         );
     }
     let text = fs::read_to_string(folder.path().join("output/small/report.md")).unwrap();

@@ -14,7 +14,7 @@ use crate::common::process::*;
 #[track_caller]
 fn assert_nothing_is_lost(folder: &Path, sets: &[(&str, BTreeMap<String, Vec<u8>>)]) -> bool {
     let manifest = manifest(folder);
-    let mut left = results(folder);
+    let mut remaining = results(folder);
     let Some(moving) = manifest["moving"].as_object() else {
         assert_eq!(manifest["complete"], true);
         let listed = manifest["files"].as_object().unwrap().keys();
@@ -22,21 +22,21 @@ fn assert_nothing_is_lost(folder: &Path, sets: &[(&str, BTreeMap<String, Vec<u8>
         let there = there.keys().filter(|name| *name != MANIFEST);
         assert!(listed.eq(there), "the manifest lists what is there");
         assert!(
-            sets.iter().any(|(_, set)| *set == left),
+            sets.iter().any(|(_, set)| *set == remaining),
             "{:?}",
-            left.keys()
+            remaining.keys()
         );
         return true;
     };
     let aside = folder.join(moving["from"].as_str().unwrap());
     for stale in moving["stale"].as_array().unwrap() {
-        left.remove(stale.as_str().unwrap());
+        remaining.remove(stale.as_str().unwrap());
     }
-    left.extend(results(&aside));
+    remaining.extend(results(&aside));
     assert!(
-        sets.iter().any(|(_, set)| *set == left),
+        sets.iter().any(|(_, set)| *set == remaining),
         "{:?}",
-        left.keys()
+        remaining.keys()
     );
     false
 }
@@ -62,7 +62,7 @@ fn a_run_killed_at_any_moment_leaves_the_old_results_or_the_new_ones() {
         (study, results(output))
     });
     assert_ne!(sets[0].1.len(), sets[1].1.len());
-    let mut on_their_way = 0;
+    let mut in_transit = 0;
     for moment in 0..30 {
         let (new, _) = sets[moment % 2];
         let mut child = start(folder, &format!("run {new}.toml --output o"));
@@ -71,7 +71,7 @@ fn a_run_killed_at_any_moment_leaves_the_old_results_or_the_new_ones() {
             || first_partial(output).is_some_and(|aside| aside.join("report.md").exists());
         let mut steps = 8 * moment;
         while steps > 0 && goes_on(&mut child, written()) {
-            on_their_way += usize::from(!assert_nothing_is_lost(output, &sets));
+            in_transit += usize::from(!assert_nothing_is_lost(output, &sets));
             steps -= usize::from(moment < 10 || written());
         }
         let _ = child.kill();
@@ -79,7 +79,7 @@ fn a_run_killed_at_any_moment_leaves_the_old_results_or_the_new_ones() {
         assert_nothing_is_lost(output, &sets);
     }
     assert!(
-        on_their_way > 0,
+        in_transit > 0,
         "no moment fell between the first file and the last"
     );
     for (study, set) in &sets {
@@ -170,15 +170,15 @@ fn closed_outputs_are_no_reason_to_lose_results() {
     let position = workplace();
     let (folder, output) = (position.path(), &position.path().join("o"));
     run(folder, "run a.toml --output whole");
-    let whole = results(&folder.join("whole"));
+    let complete = results(&folder.join("whole"));
     for closed in [">&- 2>&-", "| true", "2>/dev/full"] {
         shell(folder, &format!("\"$G\" run a.toml --output o {closed}"));
-        assert_eq!(results(output), whole, "{closed}");
+        assert_eq!(results(output), complete, "{closed}");
         fs::remove_dir_all(output).unwrap();
     }
     let ended = shell(folder, "\"$G\" run a.toml --output o >/dev/full");
     assert_ends(&ended, 4, "standard output");
-    assert_eq!(results(output), whole);
+    assert_eq!(results(output), complete);
 }
 
 #[test]
@@ -207,7 +207,7 @@ fn a_second_run_into_a_folder_is_refused_and_the_first_is_whole() {
     let second = run(folder, "run a.toml --output o");
     assert_ends(&second, 4, "another run is writing into this folder");
     assert_ne!(first.wait_with_output().unwrap().status.code(), Some(4));
-    assert_whole(output);
+    assert_complete(output);
     assert!(output.join("vtk/corrected_002.vtu").exists());
 }
 
@@ -220,12 +220,16 @@ fn a_folder_taken_away_during_a_run_is_told_or_made_anew() {
     let _ = fs::remove_dir_all(output);
     let ended = child.wait_with_output().unwrap();
     let code = ended.status.code();
-    assert!(matches!(code, Some(0 | 1 | 4)), "{code:?} {}", told(&ended));
+    assert!(
+        matches!(code, Some(0 | 1 | 4)),
+        "{code:?} {}",
+        output_text(&ended)
+    );
     if code != Some(4) {
-        assert_whole(output);
+        assert_complete(output);
     }
     assert_ne!(run(folder, "run b.toml --output o").status.code(), Some(4));
-    assert_whole(output);
+    assert_complete(output);
 }
 
 /// A study on a mesh of an earlier run's results, and a `.pvd` whose parts would be replaced.
@@ -234,11 +238,11 @@ fn no_command_writes_over_a_file_that_it_has_read() {
     let position = workplace();
     let folder = position.path();
     run(folder, "run a.toml --output o");
-    let own = "kind = \"specimen\"\ntitle = \"own\"\n[material]\ncard = \"neo-hooke\"\n[specimen]\nshape = \"mesh\"\n\
+    let study = "kind = \"specimen\"\ntitle = \"own\"\n[material]\ncard = \"neo-hooke\"\n[specimen]\nshape = \"mesh\"\n\
         file = \"o/vtk/finite_element_001.vtu\"\nfile_unit = \"mm\"\nthickness = \"2 mm\"\n[path]\nfactors = [0.1]\n\
         measured_group = \"left\"\n[[support]]\ngroup = \"left\"\nkind = \"clamp\"\n\
         [[support]]\ngroup = \"right\"\nkind = \"displacement\"\nx = \"1 mm\"\ny = \"0 mm\"\n";
-    fs::write(folder.join("own.toml"), own).unwrap();
+    fs::write(folder.join("own.toml"), study).unwrap();
     let card = "card.toml";
     let shipped = crate::common::root().join("materials/neo-hooke.toml");
     fs::copy(shipped, folder.join(card)).unwrap();
@@ -265,15 +269,15 @@ fn no_command_writes_over_a_file_that_it_has_read() {
         ),
     ] {
         let ended = run(folder, &arguments);
-        let told = told(&ended);
+        let message = output_text(&ended);
         let spared = before
             .iter()
             .all(|(name, bytes)| fs::read(folder.join(name)).ok().as_ref() == Some(bytes));
-        assert!(spared, "{arguments}: {told}");
+        assert!(spared, "{arguments}: {message}");
         assert!(
-            told.contains("is an input of this command") && told.contains(input),
-            "{arguments}: {told}"
+            message.contains("is an input of this command") && message.contains(input),
+            "{arguments}: {message}"
         );
-        assert_eq!(ended.status.code(), Some(4), "{arguments}: {told}");
+        assert_eq!(ended.status.code(), Some(4), "{arguments}: {message}");
     }
 }

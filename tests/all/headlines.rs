@@ -57,9 +57,9 @@ fn lines<'a>(results: &'a Results, picture: &str) -> &'a [Line] {
 /// The force along x of the right side at every step.
 fn forces(results: &Results, model: &str) -> Vec<[f64; 2]> {
     let steps = results.outcome.steps.iter();
-    let force = |own: &Value| match results.kind {
-        "plate" => own["force_N"].as_f64(),
-        _ => own["groups"]["right"]["force_N"][0].as_f64(),
+    let force = |figures: &Value| match results.kind {
+        "plate" => figures["force_N"].as_f64(),
+        _ => figures["groups"]["right"]["force_N"][0].as_f64(),
     };
     let scale = if results.kind == "plate" { 100.0 } else { 1.0 };
     steps
@@ -110,8 +110,14 @@ fn cell(block: &Block, row: &str, head: &str) -> f64 {
     let Block::Table(heads, rows) = block else {
         panic!("{block:?}");
     };
-    let column = heads.iter().position(|own| own.starts_with(head)).unwrap();
-    let row = rows.iter().rfind(|own| own[0].starts_with(row)).unwrap();
+    let column = heads
+        .iter()
+        .position(|entry| entry.starts_with(head))
+        .unwrap();
+    let row = rows
+        .iter()
+        .rfind(|entry| entry[0].starts_with(row))
+        .unwrap();
     row[column].parse().unwrap()
 }
 

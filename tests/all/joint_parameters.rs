@@ -109,8 +109,8 @@ fn two_specimens_give_two_parameters_a_card_and_a_ranking() {
         number(&parameters[0], &["value"])
     );
     for name in ["strip a", "strip b"] {
-        let own = folder.path().join("output/correct/specimens").join(name);
-        assert!(own.join("vtk/corrected_003.vtu").exists());
+        let specimen = folder.path().join("output/correct/specimens").join(name);
+        assert!(specimen.join("vtk/corrected_003.vtu").exists());
     }
     let forces = fs::read_to_string(folder.path().join("output/correct/forces.csv")).unwrap();
     for row in forces.lines().skip(1) {

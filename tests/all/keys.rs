@@ -265,13 +265,13 @@ fn shells_and_manuals_know_every_command() {
 #[test]
 fn the_workbench_is_started_where_it_is_installed_and_else_it_is_said_how() {
     let folder = TempDir::new().unwrap();
-    let own = folder.path().join("gelbench");
+    let program = folder.path().join("gelbench");
     let built = assert_cmd::cargo::cargo_bin("gelbench");
-    fs::hard_link(&built, &own)
-        .or_else(|_| fs::copy(&built, &own).map(|_| ()))
+    fs::hard_link(&built, &program)
+        .or_else(|_| fs::copy(&built, &program).map(|_| ()))
         .unwrap();
     let start = || {
-        let mut command = assert_cmd::Command::new(&own);
+        let mut command = assert_cmd::Command::new(&program);
         command.args(["workbench", "a.toml", "b.csv"]);
         command.env("PATH", folder.path()).assert()
     };

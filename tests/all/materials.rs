@@ -286,10 +286,10 @@ fn groups_of_specimens_are_averaged_and_compared() {
     let text = std::fs::read_to_string(folder.path().join("out/group.json")).unwrap();
     let figures: serde_json::Value = serde_json::from_str(&text).unwrap();
     for (number, c10) in [0.1, 0.15].into_iter().enumerate() {
-        let own = &figures["groups"][number];
-        let mean = own["mean_law"][0]["value"].as_f64().unwrap();
+        let group = &figures["groups"][number];
+        let mean = group["mean_law"][0]["value"].as_f64().unwrap();
         assert!((mean - c10).abs() < 1e-3 * c10, "{mean}");
-        let last = &own["states"][19];
+        let last = &group["states"][19];
         let between = last["between_specimens_MPa"].as_f64().unwrap();
         let right = 2.0 * 0.01 * (2.0 - 0.25);
         assert!((between - right).abs() < 0.02 * right, "{between} {right}");

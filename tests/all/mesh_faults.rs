@@ -27,7 +27,7 @@ fn study(more: &str) -> String {
 }
 
 /// What `gelbench` says of a mesh, in one line.
-fn told(file: &MeshFile, more: &str, arguments: &[&str], code: i32) -> String {
+fn output_text(file: &MeshFile, more: &str, arguments: &[&str], code: i32) -> String {
     let folder = folder_with(&study(more));
     fs::write(folder.path().join("strip.msh"), file.msh()).unwrap();
     let done = gelbench(folder.path(), arguments).code(code);
@@ -142,12 +142,12 @@ fn faulty() -> Vec<(&'static str, MeshFile, [&'static str; 2])> {
 #[test]
 fn check_names_every_fault_with_place_and_remedy() {
     for (name, file, expected) in faulty() {
-        let actual = told(&file, "", &CHECK, 2);
+        let actual = output_text(&file, "", &CHECK, 2);
         for expected in expected {
             assert!(actual.contains(expected), "{name}: {actual}");
         }
     }
-    told(&MeshFile::squares([4, 2]), "", &CHECK, 0);
+    output_text(&MeshFile::squares([4, 2]), "", &CHECK, 0);
 }
 
 #[test]
@@ -195,13 +195,13 @@ fn no_command_computes_on_a_faulty_mesh() {
 
 #[test]
 fn seams_are_merged_or_allowed_where_one_wants_it() {
-    told(&with_seam(), "merge_nodes = \"1e-6 mm\"", &CHECK, 0);
-    let seams = told(&with_seam(), "allowed = [\"seams\"]", &CHECK, 2);
+    output_text(&with_seam(), "merge_nodes = \"1e-6 mm\"", &CHECK, 0);
+    let seams = output_text(&with_seam(), "allowed = [\"seams\"]", &CHECK, 2);
     assert!(seams.contains("2 parts are not attached"), "{seams}");
-    let unknown = told(&with_seam(), "allowed = [\"seam\"]", &CHECK, 2);
+    let unknown = output_text(&with_seam(), "allowed = [\"seam\"]", &CHECK, 2);
     assert!(unknown.contains("\"seam\" is not known here"), "{unknown}");
     // A tolerance beyond the cells' size makes them nothing.
-    let coarse = told(&with_seam(), "merge_nodes = \"3 mm\"", &CHECK, 2);
+    let coarse = output_text(&with_seam(), "merge_nodes = \"3 mm\"", &CHECK, 2);
     assert!(
         coarse.contains("no area") || coarse.contains("inside out"),
         "{coarse}"
@@ -218,14 +218,14 @@ fn an_empty_file_name_is_an_error_and_a_polygon_a_warning() {
         radius: 0.6,
     };
     let file = MeshFile::of(&hole.mesh(4, CellShape::Quad4));
-    let actual = told(&file, "", &CHECK, 0);
+    let actual = output_text(&file, "", &CHECK, 0);
     assert!(
         actual.contains("the boundary `hole` is a polygon"),
         "{actual}"
     );
-    let meant = told(&file, "allowed = [\"polygons\"]", &CHECK, 0);
+    let meant = output_text(&file, "allowed = [\"polygons\"]", &CHECK, 0);
     assert_eq!(meant, "");
-    let actual = told(
+    let actual = output_text(
         &MeshFile::of(&hole.mesh(4, CellShape::Quad8)),
         "",
         &CHECK,
@@ -277,14 +277,14 @@ fn shuffled(file: &MeshFile) -> MeshFile {
     for (node, position) in file.nodes.iter().enumerate() {
         nodes[new(node)] = *position;
     }
-    let renamed = |own: &Vec<usize>| own.iter().map(|node| new(*node)).collect::<Vec<_>>();
+    let renamed = |entry: &Vec<usize>| entry.iter().map(|node| new(*node)).collect::<Vec<_>>();
     MeshFile {
         nodes,
         cells: file.cells.iter().rev().map(renamed).collect(),
         lines: file
             .lines
             .iter()
-            .map(|(name, own)| (name.clone(), renamed(own)))
+            .map(|(name, entry)| (name.clone(), renamed(entry)))
             .collect(),
     }
 }

@@ -8,14 +8,14 @@ use tempfile::TempDir;
 use crate::common::{SMALL, gelbench, one_line, root};
 
 /// What a command that fails prints, without line breaks.
-fn told(folder: &Path, arguments: &[&str], code: i32) -> String {
+fn output_text(folder: &Path, arguments: &[&str], code: i32) -> String {
     let done = gelbench(folder, arguments).code(code);
     one_line(&done.get_output().stderr)
 }
 
-fn contains(told: &str, expected: &[&str]) {
+fn contains(message: &str, expected: &[&str]) {
     for expected in expected {
-        assert!(told.contains(expected), "{expected}: {told}");
+        assert!(message.contains(expected), "{expected}: {message}");
     }
 }
 
@@ -23,7 +23,10 @@ fn contains(told: &str, expected: &[&str]) {
 fn checked(study: &str, expected: &[&str]) {
     let folder = TempDir::new().unwrap();
     fs::write(folder.path().join("a.toml"), study).unwrap();
-    contains(&told(folder.path(), &["check", "a.toml"], 2), expected);
+    contains(
+        &output_text(folder.path(), &["check", "a.toml"], 2),
+        expected,
+    );
 }
 
 fn example(name: &str) -> String {
@@ -55,9 +58,9 @@ fn files_that_are_no_studies_are_told_with_the_command_that_takes_them() {
         ),
     ] {
         for command in ["run", "check"] {
-            let told = told(root(), &[command, file], 2);
-            contains(&told, &[file, "not a study", expected]);
-            assert_eq!(told.matches('×').count(), 1, "one message: {told}");
+            let message = output_text(root(), &[command, file], 2);
+            contains(&message, &[file, "not a study", expected]);
+            assert_eq!(message.matches('×').count(), 1, "one message: {message}");
         }
     }
     for kind in ["specimen", "motion"] {
@@ -105,7 +108,7 @@ fn ratios_that_may_be_percentages_are_asked_for_in_every_kind_of_study() {
     let folder = TempDir::new().unwrap();
     fs::write(folder.path().join("a.toml"), table).unwrap();
     contains(
-        &told(folder.path(), &["materials", "show", "a.toml"], 2),
+        &output_text(folder.path(), &["materials", "show", "a.toml"], 2),
         &["100 means 10000 %", "\"100 %\""],
     );
     // Load factors are what they say.
@@ -158,7 +161,7 @@ fn numbers_and_units_are_told_alike_in_studies_cards_tables_and_options() {
             "--thickness",
             text,
         ];
-        contains(&told(root(), &options, 2), &["--thickness", remedy]);
+        contains(&output_text(root(), &options, 2), &["--thickness", remedy]);
     }
     let card = fs::read_to_string(root().join("materials/pva-10.toml")).unwrap();
     let folder = TempDir::new().unwrap();
@@ -167,11 +170,11 @@ fn numbers_and_units_are_told_alike_in_studies_cards_tables_and_options() {
         card.replace("0.0611 MPa", "0,0611 mpa"),
     )
     .unwrap();
-    let message = told(folder.path(), &["materials", "show", "a.toml"], 2);
+    let message = output_text(folder.path(), &["materials", "show", "a.toml"], 2);
     contains(&message, &["parameters.amplitude", "write \"0.0611 mpa\""]);
     let table = "# test: uniaxial\nstretch [-],nominal_stress [kPaa]\n1,0\n2,1\n";
     fs::write(folder.path().join("a.csv"), table).unwrap();
-    let message = told(
+    let message = output_text(
         folder.path(),
         &["materials", "fit", "a.csv", "--law", "yeoh"],
         2,
@@ -197,8 +200,8 @@ fn a_file_in_utf_16_is_told_how_to_save_it() {
     let wide: Vec<u8> = SMALL.encode_utf16().flat_map(u16::to_le_bytes).collect();
     for bytes in [[b"\xff\xfe", &*wide].concat(), wide] {
         fs::write(folder.path().join("a.toml"), bytes).unwrap();
-        let told = told(folder.path(), &["run", "a.toml"], 2);
-        contains(&told, &["written in UTF-16", "save it as UTF-8"]);
+        let message = output_text(folder.path(), &["run", "a.toml"], 2);
+        contains(&message, &["written in UTF-16", "save it as UTF-8"]);
     }
 }
 
@@ -216,8 +219,8 @@ fn units_of_meshes_are_told_by_their_names() {
     checked(&with("1"), &["must be a unit of length", "such as \"mm\""]);
     let folder = TempDir::new().unwrap();
     fs::write(folder.path().join("a.toml"), with("\"mm\"")).unwrap();
-    let told = told(folder.path(), &["check", "a.toml"], 2);
-    assert!(!told.contains("specimen.file_unit:"), "{told}");
+    let message = output_text(folder.path(), &["check", "a.toml"], 2);
+    assert!(!message.contains("specimen.file_unit:"), "{message}");
 }
 
 /// The frame 2 of the measured plate.
@@ -243,7 +246,7 @@ fn a_force_with_the_wrong_sign_is_told_before_anything_is_computed() {
             "left,right",
             "--force",
         ];
-        told(folder.path(), &[&options[..], &[force]].concat(), 2)
+        output_text(folder.path(), &[&options[..], &[force]].concat(), 2)
     };
     contains(
         &with("left x 12.9 N"),
@@ -268,9 +271,9 @@ fn a_force_among_several_frames_is_asked_for_its_frame() {
         "--force",
         "right x 12.9 N",
     ];
-    let told = told(root(), &options, 2);
+    let message = output_text(root(), &options, 2);
     contains(
-        &told,
+        &message,
         &[
             "there are 2 frames",
             "`frame = 2` under [[force]]",
@@ -387,7 +390,7 @@ fn a_card_with_two_laws_is_told_to_have_one() {
     ] {
         fs::write(folder.path().join("a.toml"), card).unwrap();
         contains(
-            &told(folder.path(), &["materials", "show", "a.toml"], 2),
+            &output_text(folder.path(), &["materials", "show", "a.toml"], 2),
             &[expected],
         );
     }
@@ -399,16 +402,16 @@ fn a_file_in_place_of_a_folder_is_told_and_a_folder_in_place_of_a_file() {
     let path = folder.path();
     fs::write(path.join("small.toml"), SMALL).unwrap();
     for output in ["small.toml", "small.toml/deep"] {
-        let told = told(path, &["run", "small.toml", "--output", output], 4);
+        let message = output_text(path, &["run", "small.toml", "--output", output], 4);
         contains(
-            &told,
+            &message,
             &["small.toml is a file", "name another with --output"],
         );
     }
     fs::create_dir(path.join("there")).unwrap();
     let data = root().join("materials/data/pva_10_uniaxial.csv");
     let data = data.to_str().unwrap();
-    let message = told(
+    let message = output_text(
         path,
         &[
             "materials",
@@ -423,7 +426,7 @@ fn a_file_in_place_of_a_folder_is_told_and_a_folder_in_place_of_a_file() {
     );
     contains(&message, &["small.toml is a file"]);
     for command in [["plot", "pva-10"], ["convert", data]] {
-        let message = told(
+        let message = output_text(
             path,
             &["materials", command[0], command[1], "--output", "there"],
             4,
@@ -434,7 +437,7 @@ fn a_file_in_place_of_a_folder_is_told_and_a_folder_in_place_of_a_file() {
 
 #[test]
 fn a_comparison_with_another_step_is_told_to_name_the_step() {
-    let told = told(
+    let message = output_text(
         root(),
         &[
             "compare",
@@ -445,5 +448,8 @@ fn a_comparison_with_another_step_is_told_to_name_the_step() {
         ],
         2,
     );
-    contains(&told, &["a stretch of 5000 %", "write --factor \"50 %\""]);
+    contains(
+        &message,
+        &["a stretch of 5000 %", "write --factor \"50 %\""],
+    );
 }

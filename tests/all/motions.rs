@@ -275,10 +275,10 @@ fn the_finite_elements_own_error_is_what_finer_ones_differ_by() {
             let file =
                 |name: &str| fs::read_to_string(folder.path().join("out").join(name)).unwrap();
             let report = machine_report(&folder.path().join("out"));
-            let own =
+            let stated_percent =
                 report["problem"]["finite_element_own_error"]["displacement_percent"].as_f64();
             let table = columns(&file("motion_finite_element.csv"), "displacement");
-            (own.unwrap(), table)
+            (stated_percent.unwrap(), table)
         };
         let (stated, table) = run("[12, 4]", &rest);
         let shorter = rest.replace("step = \"1 ms\"", "step = \"0.1 ms\"");

@@ -211,7 +211,7 @@ fn what_is_measured_within_a_sheet_in_uniaxial_tension_is_exact_in_every_model_t
     let strip = strip.replace("x = \"30 mm\"\ny = \"0 mm\"", "x = \"30 mm\"");
     let results = computed(&(strip + MEASURED));
     let of = |head: &[String], row: &[String], name: &str| -> f64 {
-        let column = head.iter().position(|own| own == name).unwrap();
+        let column = head.iter().position(|entry| entry == name).unwrap();
         row[column].parse().unwrap()
     };
     let (head, probes) = rows(&results, "probes.csv");
@@ -249,7 +249,7 @@ fn what_is_measured_within_a_sheet_in_uniaxial_tension_is_exact_in_every_model_t
         .outcome
         .figures
         .iter()
-        .map(|own| &*own.name)
+        .map(|figure| &*figure.name)
         .collect();
     for name in [
         "sheet_probes.png",

@@ -45,13 +45,13 @@ fn effectivities(
     gelbench(folder.path(), &["run", "small.toml", "--output", "out"]).code(1);
     let report = machine_report(&folder.path().join("out"));
     let stated = |key| number(&report["steps"][0]["finite_element"], &[key]);
-    let own = solve(problem, cells, 2.0);
+    let solution = solve(problem, cells, 2.0);
     let nodes = Mesh::plate(problem.size, lattice, CellShape::Quad4);
     let on_nodes =
         |(model, states): &Solved| model.mesh.displacement_on(&states[0].displacement, &nodes);
-    let (field, exact) = (on_nodes(&own), on_nodes(truth));
+    let (field, exact) = (on_nodes(&solution), on_nodes(truth));
     let force_of = |(model, states): &Solved| Measures::of(&model.mesh, &states[0]).force;
-    let force = 100.0 * (force_of(&own) / force_of(truth) - 1.0).abs();
+    let force = 100.0 * (force_of(&solution) / force_of(truth) - 1.0).abs();
     [
         stated("field_discretisation_percent") / displacement_percent(&nodes, &field, &exact),
         stated("measured_discretisation_percent") / force,
@@ -138,13 +138,13 @@ fn what_local_refinement_states_as_its_error_of_the_displacement_holds_the_diffe
     let [truth, least] = ring("T2", "0.2 %");
     assert!(least < 0.02, "{least}");
     for error in ["10 %", "5 %", "4 %"] {
-        let [actual, own] = ring("T1", error);
+        let [actual, stated] = ring("T1", error);
         let apart = (actual - truth).abs();
         assert!(
-            apart < own + least,
-            "{error}: {actual} {own} {truth} {least}"
+            apart < stated + least,
+            "{error}: {actual} {stated} {truth} {least}"
         );
-        assert!(own < 2.0, "{error}: {own}");
+        assert!(stated < 2.0, "{error}: {stated}");
     }
 }
 
@@ -209,7 +209,10 @@ fn cracked_square(n: usize) -> String {
             node(i + 1, j + 1),
             node(i, j + 1),
         ];
-        format!("3 2 3 3 {}", corners.map(|own| own.to_string()).join(" "))
+        format!(
+            "3 2 3 3 {}",
+            corners.map(|corner| corner.to_string()).join(" ")
+        )
     });
     let all: Vec<String> = ligament.chain(top).chain(cells).collect();
     text += &format!("$EndNodes\n$Elements\n{}\n", all.len());
@@ -238,12 +241,12 @@ fn a_support_that_ends_within_an_edge_states_no_less_than_half_of_its_error() {
         std::fs::write(folder.path().join("square.msh"), cracked_square(n)).unwrap();
         gelbench(folder.path(), &["run", "small.toml"]);
         let report = machine_report(&folder.path().join("output/small"));
-        let own = &report["steps"][0]["finite_element"];
+        let figures = &report["steps"][0]["finite_element"];
         for (key, truth) in [
             ("displacement_discretisation_percent", displacement),
             ("measured_discretisation_percent", force),
         ] {
-            let stated = number(own, &[key]);
+            let stated = number(figures, &[key]);
             assert!(
                 stated > 0.5 * truth && stated < 10.0 * truth,
                 "{n} {key}: {stated}, {truth}"

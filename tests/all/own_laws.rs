@@ -10,20 +10,20 @@ use gelbench::studies::{Progress, motion};
 use gelbench_studies::studies::specimen;
 
 /// A study with a card by its name, and with another card put in its place.
-fn computed(text: &str, own: Option<Card>) -> Outcome {
+fn computed(text: &str, card: Option<Card>) -> Outcome {
     let file = Path::new("study.toml");
     let case = kind_of("study.toml", text).unwrap().unwrap();
     let budget = Budget::default();
     if case.name == specimen::KIND {
         let strip = specimen::load(case, file, text, budget).unwrap().made;
-        let strip = match own {
+        let strip = match card {
             Some(card) => strip.with_card(card),
             None => strip,
         };
         return specimen::compute(&strip, Progress::silent()).unwrap();
     }
     let plate = motion::load(case, file, text, budget).unwrap().made;
-    let plate = match own {
+    let plate = match card {
         Some(card) => plate.with_card(card),
         None => plate,
     };
@@ -44,9 +44,9 @@ fn a_law_of_ones_own_computes_as_the_same_law_of_a_card() {
         let card = Card::load("neo-hooke", crate::common::root()).unwrap();
         let of_card = computed(&text.replace("pva-10", "neo-hooke"), None);
         let named = Card::of_law("my gel", card.law, [0.5, 2.0]);
-        let own = computed(text, Some(named));
-        assert!(!own.checks.is_empty());
-        assert_eq!(own.checks, of_card.checks);
-        assert_ne!(own.checks, computed(text, None).checks);
+        let with_law = computed(text, Some(named));
+        assert!(!with_law.checks.is_empty());
+        assert_eq!(with_law.checks, of_card.checks);
+        assert_ne!(with_law.checks, computed(text, None).checks);
     }
 }

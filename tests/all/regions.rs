@@ -75,7 +75,13 @@ fn the_models_of_two_strips_in_parallel_carry_the_sum_of_their_forces() {
     let regions = report["material"]["regions"].as_array().unwrap();
     let output: Vec<_> = regions
         .iter()
-        .map(|own| (&own["number"], &own["name"], &own["material"]["card"]))
+        .map(|region| {
+            (
+                &region["number"],
+                &region["name"],
+                &region["material"]["card"],
+            )
+        })
         .map(|(number, name, card)| format!("{number} {name} {card}"))
         .collect();
     assert_eq!(
@@ -341,7 +347,10 @@ fn a_corrected_field_has_the_force_of_the_cards_of_all_regions() {
         let forces = report["steps"][0]["corrected"]["forces"]
             .as_array()
             .unwrap();
-        let right = forces.iter().find(|own| own["edge"] == "right").unwrap();
+        let right = forces
+            .iter()
+            .find(|force| force["edge"] == "right")
+            .unwrap();
         number(right, &["x_N", "value"])
     };
     let exact = 0.5 * 4.0 * (stress("neo-hooke") + stress("meunier-yeoh"));

@@ -208,9 +208,9 @@ fn a_record_becomes_a_card_that_motions_and_pictures_take() {
     // A motion that lasts longer and is faster than the test.
     let study =
         fs::read_to_string(crate::common::root().join("examples/relaxing_plate.toml")).unwrap();
-    let own = study.find("[material.viscosity]").unwrap()..study.find("[plate]").unwrap();
+    let viscosity = study.find("[material.viscosity]").unwrap()..study.find("[plate]").unwrap();
     let study = study
-        .replace(&study[own], "")
+        .replace(&study[viscosity], "")
         .replace("\"pva-10\"", "\"gel.toml\"");
     fs::write(
         folder.path().join("study.toml"),

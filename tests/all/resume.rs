@@ -19,19 +19,19 @@ use crate::common::process::*;
 struct Notes {
     before: RefCell<Vec<(usize, Milestone)>>,
     paths: Cell<usize>,
-    found: RefCell<Vec<(usize, Milestone)>>,
+    milestones: RefCell<Vec<(usize, Milestone)>>,
 }
 
 impl Journal for Notes {
     fn begin(&self) -> Vec<Milestone> {
         let path = self.paths.replace(self.paths.get() + 1);
         let mut before = self.before.borrow_mut();
-        let own = before.extract_if(.., |(of, _)| *of == path);
-        own.map(|(_, milestone)| milestone).collect()
+        let milestones = before.extract_if(.., |(of, _)| *of == path);
+        milestones.map(|(_, milestone)| milestone).collect()
     }
 
     fn keep(&self, milestone: Milestone) {
-        self.found
+        self.milestones
             .borrow_mut()
             .push((self.paths.get() - 1, milestone));
     }
@@ -54,7 +54,7 @@ fn computed(study: &Path, before: &[(usize, Milestone)]) -> (String, Vec<(usize,
         notes.before.borrow().is_empty(),
         "all that was kept is taken"
     );
-    (format!("{outcome:?}"), notes.found.into_inner())
+    (format!("{outcome:?}"), notes.milestones.into_inner())
 }
 
 /// A plate far stretched, a hole under shear, local refinement, and a force whose steps are cut.
@@ -92,12 +92,12 @@ fn a_computation_goes_on_from_any_equilibrium_to_the_same_bits() {
     for (name, text) in STUDIES {
         let study = folder.path().join(format!("{name}.toml"));
         fs::write(&study, text).unwrap();
-        let (whole, found) = computed(&study, &[]);
-        assert!(found.len() >= 6, "{name}: {}", found.len());
-        for kept in (0..=found.len()).step_by(2) {
-            let (gone_on, rest) = computed(&study, &found[..kept]);
-            assert_eq!(rest, found[kept..], "{name}, {kept} kept");
-            assert!(gone_on == whole, "{name}, {kept} kept");
+        let (full, milestones) = computed(&study, &[]);
+        assert!(milestones.len() >= 6, "{name}: {}", milestones.len());
+        for kept in (0..=milestones.len()).step_by(2) {
+            let (gone_on, rest) = computed(&study, &milestones[..kept]);
+            assert_eq!(rest, milestones[kept..], "{name}, {kept} kept");
+            assert!(gone_on == full, "{name}, {kept} kept");
         }
     }
 }
@@ -114,7 +114,7 @@ fn a_run_goes_on_where_it_was_broken_off() {
     fs::write(folder.join("long.toml"), LONG).unwrap();
     let command = "run long.toml --output l";
     run(folder, command);
-    let whole = results(output);
+    let complete = results(output);
     fs::remove_dir_all(output).unwrap();
     let kept = || first_partial(output).is_some_and(|partial| partial.join(".parts/0").exists());
     // A run keeps nothing within its first two seconds: it sleeps through them.
@@ -139,8 +139,12 @@ fn a_run_goes_on_where_it_was_broken_off() {
         }
         assert!(kept());
         let ended = run(folder, command);
-        assert!(told(&ended).contains("continues from"), "{}", told(&ended));
-        assert_eq!(results(output), whole);
+        assert!(
+            output_text(&ended).contains("continues from"),
+            "{}",
+            output_text(&ended)
+        );
+        assert_eq!(results(output), complete);
         assert!(!partial(output));
     }
     // Another study is another run.
@@ -149,8 +153,12 @@ fn a_run_goes_on_where_it_was_broken_off() {
     child.wait().unwrap();
     fs::write(folder.join("long.toml"), LONG.replace("30 %", "31 %")).unwrap();
     let ended = run(folder, command);
-    assert!(!told(&ended).contains("continues from"), "{}", told(&ended));
-    assert_ne!(results(output), whole);
+    assert!(
+        !output_text(&ended).contains("continues from"),
+        "{}",
+        output_text(&ended)
+    );
+    assert_ne!(results(output), complete);
 }
 
 #[test]
@@ -158,8 +166,8 @@ fn a_correction_of_frames_goes_on_where_it_was_broken_off() {
     let position = workplace();
     let (folder, output) = (position.path(), &position.path().join("c"));
     run(folder, CORRECT);
-    let whole = results(output);
-    assert_eq!(whole.len(), 4 * 5 + 3 + 1 + 12, "{:?}", whole.keys());
+    let complete = results(output);
+    assert_eq!(complete.len(), 4 * 5 + 3 + 1 + 12, "{:?}", complete.keys());
     fs::remove_dir_all(output).unwrap();
 
     let first = |of: &str| first_partial(output).map(|partial| partial.join(of));
@@ -171,15 +179,15 @@ fn a_correction_of_frames_goes_on_where_it_was_broken_off() {
         child.wait().unwrap();
     };
     kill_after("2");
-    let made = |path: &Path| fs::metadata(path).unwrap().modified().unwrap();
-    let early = made(&first("nodes_001.csv").unwrap());
+    let modified = |path: &Path| fs::metadata(path).unwrap().modified().unwrap();
+    let early = modified(&first("nodes_001.csv").unwrap());
     run(folder, CORRECT);
     assert_eq!(
-        made(&output.join("nodes_001.csv")),
+        modified(&output.join("nodes_001.csv")),
         early,
         "the first frame is not done again"
     );
-    assert_eq!(results(output), whole);
+    assert_eq!(results(output), complete);
     assert!(!partial(output));
 
     // Other markers are another correction.
@@ -187,8 +195,11 @@ fn a_correction_of_frames_goes_on_where_it_was_broken_off() {
     let changed = markers(4).replacen("0.0100", "0.0150", 1);
     fs::write(folder.join("m.csv"), changed).unwrap();
     run(folder, CORRECT);
-    assert_ne!(results(output)["nodes_001.csv"], whole["nodes_001.csv"]);
-    assert_ne!(results(output)["markers_001.csv"], whole["markers_001.csv"]);
+    assert_ne!(results(output)["nodes_001.csv"], complete["nodes_001.csv"]);
+    assert_ne!(
+        results(output)["markers_001.csv"],
+        complete["markers_001.csv"]
+    );
     assert!(!partial(output));
 
     let child = start(folder, &CORRECT.replace("c.csv", "m.csv"));

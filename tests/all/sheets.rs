@@ -184,10 +184,10 @@ fn a_driven_motion_has_limits_of_five_percent_unless_it_states_others() {
         let report = machine_report(&folder.path().join("out"));
         let all = report["requirements"].as_array().unwrap().clone();
         let of = |name: &str| {
-            let own = all
+            let requirement = all
                 .iter()
-                .find(|own| own["quantity"].as_str().unwrap().contains(name));
-            own.map(|own| own["wanted"]["at_most"].as_f64().unwrap())
+                .find(|requirement| requirement["quantity"].as_str().unwrap().contains(name));
+            requirement.map(|requirement| requirement["wanted"]["at_most"].as_f64().unwrap())
         };
         ["displacement", "force of the right grip"].map(of)
     };

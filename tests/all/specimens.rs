@@ -97,14 +97,14 @@ fn specimens_of_every_shape_run_in_all_three_models() {
         let [_, group, "finite elements", _] = names.split(',').collect::<Vec<_>>()[..] else {
             panic!("{last}");
         };
-        let own = &machine["steps"][1]["finite_element"]["groups"][group]["force_N"];
+        let force = &machine["steps"][1]["finite_element"]["groups"][group]["force_N"];
         let result: Vec<f64> = numbers
             .split(',')
             .map(|word| word.parse().unwrap())
             .collect();
         for (axis, result) in result[..2].iter().enumerate() {
             assert!(
-                (own[axis].as_f64().unwrap() - result).abs() < 1e-12,
+                (force[axis].as_f64().unwrap() - result).abs() < 1e-12,
                 "{last}"
             );
         }

@@ -31,7 +31,7 @@ fn folder() -> tempfile::TempDir {
 
 fn sweep(folder: &Path, more: &str) -> BTreeMap<String, Vec<u8>> {
     let done = run(folder, &format!("sweep {VARIED}{more}"));
-    assert!(done.status.success(), "{}", told(&done));
+    assert!(done.status.success(), "{}", output_text(&done));
     results(&folder.join("output/s_sweep"))
 }
 
@@ -39,8 +39,8 @@ fn sweep(folder: &Path, more: &str) -> BTreeMap<String, Vec<u8>> {
 fn a_sweep_that_was_killed_goes_on_and_parts_are_the_whole() {
     let position = folder();
     let folder = position.path();
-    let whole = sweep(folder, "");
-    let table = String::from_utf8(whole["sweep.csv"].clone()).unwrap();
+    let complete = sweep(folder, "");
+    let table = String::from_utf8(complete["sweep.csv"].clone()).unwrap();
     assert_eq!(table.lines().count(), 25);
     assert!(
         table.starts_with("run,material.c10 [MPa],plate.width [mm],corrected."),
@@ -65,7 +65,7 @@ fn a_sweep_that_was_killed_goes_on_and_parts_are_the_whole() {
     child.wait().unwrap();
     assert!(count() >= 5);
     assert!(
-        sweep(folder, "") == whole,
+        sweep(folder, "") == complete,
         "what a killed sweep has left and what is added are the whole"
     );
 
@@ -83,8 +83,8 @@ fn a_sweep_that_was_killed_goes_on_and_parts_are_the_whole() {
         "not those of this sweep",
     );
     let joined = sweep(folder, " --join 3");
-    assert_eq!(joined["sweep.csv"], whole["sweep.csv"]);
-    assert_eq!(joined["sweep.json"], whole["sweep.json"]);
+    assert_eq!(joined["sweep.csv"], complete["sweep.csv"]);
+    assert_eq!(joined["sweep.json"], complete["sweep.json"]);
 }
 
 #[test]
@@ -107,7 +107,7 @@ fn a_sweep_of_other_cards_is_another_sweep() {
     )
     .unwrap();
     let done = run(folder, arguments);
-    assert!(done.status.success(), "{}", told(&done));
+    assert!(done.status.success(), "{}", output_text(&done));
     let after = fs::read(output.join("sweep.csv")).unwrap();
     fs::remove_dir_all(output).unwrap();
     run(folder, arguments);
@@ -148,7 +148,7 @@ fn runs_without_a_solution_stand_in_the_table() {
 /// The column of a table below a head.
 fn column<'a>(table: &'a str, head: &str) -> Vec<&'a str> {
     let heads: Vec<&str> = table.lines().next().unwrap().split(',').collect();
-    let position = heads.iter().position(|own| *own == head);
+    let position = heads.iter().position(|name| *name == head);
     let position = position.unwrap_or_else(|| panic!("{head}: {heads:?}"));
     let rows = table.lines().skip(1);
     rows.map(|row| row.split(',').nth(position).unwrap())
@@ -188,12 +188,12 @@ specimen = \"none\"
     let varied =
         "s.toml --vary material.softening.r=1.5,3 --vary material.relaxation.2.share=0.1,0.2";
     let done = run(position.path(), &format!("sweep {varied}"));
-    assert!(done.status.success(), "{}", told(&done));
+    assert!(done.status.success(), "{}", output_text(&done));
     let files = results(&position.path().join("output/s_sweep"));
     let table = String::from_utf8(files["sweep.csv"].clone()).unwrap();
     let virgin = column(&table, "corrected.force_N@0.1");
     assert!(
-        virgin.len() == 4 && virgin.iter().all(|own| own == &virgin[0]),
+        virgin.len() == 4 && virgin.iter().all(|force| force == &virgin[0]),
         "{virgin:?}"
     );
     let forces = column(&table, "corrected.force_N@0.1#2");

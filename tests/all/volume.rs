@@ -223,8 +223,8 @@ fn laws_of_volume_change_run_in_studies() {
             let report = machine_report(&folder.path().join("output/small"));
             assert!(report["material"]["bulk_modulus_MPa"].as_f64().unwrap() > 0.0);
             let warnings = report["warnings"].to_string();
-            let own = samples::card(law, parameters).law;
-            let nu = own.youngs_modulus() / (2.0 * own.shear_modulus()) - 1.0;
+            let material = samples::card(law, parameters).law;
+            let nu = material.youngs_modulus() / (2.0 * material.shear_modulus()) - 1.0;
             let in_plane = match sheet {
                 "plane-strain" => nu / (1.0 - nu),
                 _ => nu,
@@ -266,12 +266,15 @@ fn what_cannot_change_its_volume_is_told() {
         ["", ""],
     );
     assert!(energy.contains("simo-taylor"), "{energy}");
-    let own = message(
+    let compressible = message(
         "plane-stress",
         "poisson_ratio = 0.3",
         ["law = \"neo-hooke\"", "law = \"blatz-ko\""],
     );
-    assert!(own.contains("compressible by itself"), "{own}");
+    assert!(
+        compressible.contains("compressible by itself"),
+        "{compressible}"
+    );
     let water = message("plane-strain", "bulk_modulus = \"2.2 GPa\"", ["", ""]);
     assert!(
         water.contains("times its shear modulus") && water.contains("`poisson_ratio = 0.4999`"),

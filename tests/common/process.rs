@@ -82,15 +82,15 @@ pub fn shell(folder: &Path, script: &str) -> Output {
     command.args(["-c", script]).output().unwrap()
 }
 
-pub fn told(output: &Output) -> String {
+pub fn output_text(output: &Output) -> String {
     super::one_line(&output.stderr)
 }
 
 #[track_caller]
 pub fn assert_ends(output: &Output, code: i32, words: &str) {
-    let told = told(output);
-    assert_eq!(output.status.code(), Some(code), "{told}");
-    assert!(told.contains(words), "{told}");
+    let message = output_text(output);
+    assert_eq!(output.status.code(), Some(code), "{message}");
+    assert!(message.contains(words), "{message}");
 }
 
 /// All files below a folder by their names, but for partial folders.
@@ -141,7 +141,7 @@ pub fn partial(folder: &Path) -> bool {
 
 /// Every file that a collection or the manifest names is there.
 #[track_caller]
-pub fn assert_whole(folder: &Path) {
+pub fn assert_complete(folder: &Path) {
     let files = files(folder);
     for (name, text) in files.iter().filter(|(name, _)| name.ends_with(".pvd")) {
         let text = String::from_utf8_lossy(text).into_owned();

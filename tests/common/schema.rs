@@ -59,12 +59,12 @@ pub fn faults(schema: &Value, value: &Value, position: &str) -> Vec<String> {
             result.push(format!("{position}: lacks {key}"));
         }
     }
-    for (key, own) in entries {
+    for (key, entry) in entries {
         let position = format!("{position}.{key}");
         match (&schema["properties"][key], &schema["additionalProperties"]) {
             (Value::Null, Value::Bool(false)) => result.push(format!("{position}: not allowed")),
-            (Value::Null, other) => result.extend(faults(other, own, &position)),
-            (known, _) => result.extend(faults(known, own, &position)),
+            (Value::Null, other) => result.extend(faults(other, entry, &position)),
+            (known, _) => result.extend(faults(known, entry, &position)),
         }
     }
     result

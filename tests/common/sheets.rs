@@ -22,9 +22,11 @@ pub const RING: Shape = Shape::RingSector {
 };
 
 /// With names that own themselves.
-pub fn named<T>(own: impl IntoIterator<Item = (&'static str, T)>) -> Vec<(String, T)> {
-    let own = own.into_iter();
-    own.map(|(name, own)| (name.to_owned(), own)).collect()
+pub fn named<T>(entries: impl IntoIterator<Item = (&'static str, T)>) -> Vec<(String, T)> {
+    let entries = entries.into_iter();
+    entries
+        .map(|(name, value)| (name.to_owned(), value))
+        .collect()
 }
 
 /// Held at a displacement.

@@ -67,19 +67,19 @@ pub struct Document<'a> {
 }
 
 /// Most syntax faults reported for one document: the first ones usually cause the others.
-const MOST_SYNTAX_TOLD: usize = 5;
+const MOST_SYNTAX_FAULTS: usize = 5;
 
 /// How messages about TOML's syntax begin.
 const SYNTAX: &str = "TOML syntax";
 
 /// Most findings reported for one document.
-const MOST_TOLD: usize = 50;
+const MOST_DIAGNOSTICS: usize = 50;
 
 /// Collects the findings while a document is read.
 #[derive(Debug, Default)]
 pub struct Faults {
     budget: Budget,
-    found: RefCell<Vec<Diagnostic>>,
+    diagnostics: RefCell<Vec<Diagnostic>>,
     defaulted: RefCell<Vec<String>>,
     keys: RefCell<Vec<Key>>,
     /// Whether the syntax is so broken that only its first fault says what is wrong.
@@ -97,7 +97,7 @@ impl Faults {
 
     /// Adds a finding.
     pub fn push(&self, diagnostic: Diagnostic) {
-        self.found.borrow_mut().push(diagnostic);
+        self.diagnostics.borrow_mut().push(diagnostic);
     }
 
     /// Notes a key that was not written and took its default.
@@ -120,7 +120,7 @@ impl Faults {
 
     /// Whether no finding so far stops the program.
     pub fn none(&self) -> bool {
-        self.found
+        self.diagnostics
             .borrow()
             .iter()
             .all(|fault| fault.severity == Severity::Warning)
@@ -132,16 +132,16 @@ impl Faults {
     /// [`Error::Input`] with all findings when one of them is an error.
     pub fn finish(self) -> Result<Vec<Diagnostic>, Error> {
         let ok = self.none();
-        let mut all = self.found.into_inner();
+        let mut all = self.diagnostics.into_inner();
         if self.is_broken.get() {
             all.retain(|fault| fault.message.starts_with(SYNTAX));
         }
         all.sort_by_key(|fault| fault.position.as_ref().map_or(0, |(_, span)| span.start));
-        if all.len() > MOST_TOLD {
-            let more = all.len() - MOST_TOLD;
+        if all.len() > MOST_DIAGNOSTICS {
+            let more = all.len() - MOST_DIAGNOSTICS;
             // Errors come first: the author must see them.
             all.sort_by_key(|fault| fault.severity == Severity::Warning);
-            all.truncate(MOST_TOLD);
+            all.truncate(MOST_DIAGNOSTICS);
             let severity = if ok {
                 Severity::Warning
             } else {
@@ -168,7 +168,7 @@ impl<'a> Document<'a> {
             let hint = syntax::remedy(text, &span, message);
             // Where the intention is unknown, later faults are consequences of the first.
             let is_broken = hint.is_none();
-            if is_broken || output < MOST_SYNTAX_TOLD {
+            if is_broken || output < MOST_SYNTAX_FAULTS {
                 let diagnostic = Diagnostic {
                     hint: hint.or_else(|| syntax::advice(message)),
                     ..Diagnostic::error("", format!("{SYNTAX}: {message}"))
@@ -205,8 +205,8 @@ impl<'a> Document<'a> {
 
 /// The first name of a choice in a list such as that of [`Section::choice`].
 pub fn name_of<T: PartialEq>(names: &[(&'static str, T)], choice: T) -> &'static str {
-    let found = names.iter().find(|(_, known)| *known == choice);
-    found.map_or("", |(name, _)| name)
+    let entry = names.iter().find(|(_, known)| *known == choice);
+    entry.map_or("", |(name, _)| name)
 }
 
 /// A text in quotes, as written in a document.

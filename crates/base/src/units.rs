@@ -38,7 +38,7 @@ pub enum QuantityFault {
         /// The unit as written.
         unit: String,
         /// What that unit measures.
-        found: Dimension,
+        actual: Dimension,
     },
 }
 
@@ -59,8 +59,8 @@ impl fmt::Display for QuantityFault {
                     "is not a possible {name}: its absolute value must be zero or lie between {least:e} and {most:e}{space}{unit}"
                 )
             }
-            Self::WrongDimension { unit, found } => {
-                write!(f, "has the unit `{unit}`, which measures {}", found.name())
+            Self::WrongDimension { unit, actual } => {
+                write!(f, "has the unit `{unit}`, which measures {}", actual.name())
             }
         }
     }
@@ -102,15 +102,15 @@ pub fn parse(text: &str, dimension: Dimension) -> Result<f64, QuantityFault> {
             Dimension::Temperature => admitted(number + ICE_POINT, dimension),
             _ => Err(QuantityFault::WrongDimension {
                 unit: unit.to_owned(),
-                found: Dimension::Temperature,
+                actual: Dimension::Temperature,
             }),
         };
     }
     match UNITS.iter().find(|(symbol, ..)| *symbol == normalised) {
-        Some((_, found, factor)) if *found == dimension => admitted(number * factor, dimension),
-        Some((_, found, _)) => Err(QuantityFault::WrongDimension {
+        Some((_, actual, factor)) if *actual == dimension => admitted(number * factor, dimension),
+        Some((_, actual, _)) => Err(QuantityFault::WrongDimension {
             unit: unit.to_owned(),
-            found: *found,
+            actual: *actual,
         }),
         None => Err(QuantityFault::UnknownUnit(unit.to_owned())),
     }
@@ -157,8 +157,8 @@ pub fn factor(unit: &str, dimension: Dimension) -> Result<f64, QuantityFault> {
 
 /// Whether a unit is known for any dimension.
 pub fn is_known(unit: &str) -> bool {
-    let found = parse(&format!("1 {unit}"), Dimension::Length);
-    !matches!(found, Err(QuantityFault::UnknownUnit(_)))
+    let parsed = parse(&format!("1 {unit}"), Dimension::Length);
+    !matches!(parsed, Err(QuantityFault::UnknownUnit(_)))
 }
 
 /// Length in bytes of the decimal number at the beginning of `text`.

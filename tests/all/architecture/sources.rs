@@ -75,12 +75,12 @@ pub fn expand(tree: &str, before: &[String]) -> Vec<(ModulePath, String)> {
         } else {
             all
         };
-        let own = if name.is_empty() {
+        let local_name = if name.is_empty() {
             all.last().unwrap().clone()
         } else {
             name.trim().to_owned()
         };
-        return vec![(all, own)];
+        return vec![(all, local_name)];
     };
     let (mut depth, mut start, mut result) = (0, 0, Vec::new());
     for (at, c) in group.char_indices().chain([(group.len(), ',')]) {
@@ -162,7 +162,7 @@ impl Sources {
     pub fn of_workspace() -> Self {
         let mut sources = Self(BTreeMap::new());
         let crates = fs::read_dir("crates").unwrap();
-        let mut roots: Vec<PathBuf> = crates.map(|own| own.unwrap().path()).collect();
+        let mut roots: Vec<PathBuf> = crates.map(|entry| entry.unwrap().path()).collect();
         roots.extend([PathBuf::from("validation"), PathBuf::new()]);
         for root in roots {
             sources.read(&root.join("src/lib.rs"), Vec::new());

@@ -21,7 +21,7 @@ fn table(folder: &Path, name: &str) -> Vec<(String, Vec<f64>)> {
 }
 
 fn column(table: &[(String, Vec<f64>)], head: &str) -> Vec<f64> {
-    let actual = table.iter().find(|(own, _)| own == head);
+    let actual = table.iter().find(|(name, _)| name == head);
     actual.unwrap_or_else(|| panic!("{head}")).1.clone()
 }
 

@@ -16,8 +16,8 @@ fn corrected(shape: &str, rest: &str, method: &str) -> (Vec<[f64; 2]>, Value, St
     let json = machine_report(&folder.path().join("out"));
     let steps = json["steps"].as_array().unwrap().iter();
     let figures = steps.map(|step| {
-        let own = &step["corrected"];
-        ["measured_percent", "displacement_percent"].map(|key| own[key].as_f64().unwrap())
+        let corrected = &step["corrected"];
+        ["measured_percent", "displacement_percent"].map(|key| corrected[key].as_f64().unwrap())
     });
     (figures.collect(), json.clone(), read("report.md"))
 }

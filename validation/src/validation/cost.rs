@@ -32,7 +32,7 @@ pub fn prepare(root: &Section, folder: &Path) -> Computation {
 const EQUAL: f64 = 1.01;
 
 /// One way to the field: its name, nodes, deviation in % and shortest time in s.
-struct Way {
+struct Method {
     name: &'static str,
     nodes: usize,
     departure: f64,
@@ -40,9 +40,9 @@ struct Way {
 }
 
 /// A way of the corrector, and the finite elements with the same equations on the same nodes.
-struct Beside {
-    corrected: Way,
-    elements: Way,
+struct Comparison {
+    corrected: Method,
+    elements: Method,
 }
 
 /// What every way is measured with.
@@ -78,7 +78,7 @@ impl<'a> Bench<'a> {
         &self,
         name: &'static str,
         work: impl Fn() -> Result<Vec<f64>, Error>,
-    ) -> Result<Way, Error> {
+    ) -> Result<Method, Error> {
         self.progress.tell(name);
         let (mut seconds, mut field) = (f64::INFINITY, Vec::new());
         for _ in 0..self.repetitions {
@@ -87,7 +87,7 @@ impl<'a> Bench<'a> {
             seconds = seconds.min(start.elapsed().as_secs_f64());
         }
         let mesh = &self.lattice.mesh;
-        Ok(Way {
+        Ok(Method {
             name,
             nodes: mesh.nodes.len(),
             departure: departure_percent(mesh, &field, &self.reference, &self.affine),
@@ -101,7 +101,7 @@ impl<'a> Bench<'a> {
         name: &'static str,
         cells: [usize; 2],
         element: Element,
-    ) -> Result<Way, Error> {
+    ) -> Result<Method, Error> {
         self.measure(name, || {
             let (model, solution) = self.plate.finite_elements(cells, element)?;
             let displacement = &solution.displacement;
@@ -121,11 +121,11 @@ fn compute(plate: &Plate, repetitions: usize, progress: Progress) -> Result<Outc
         Ok(plate.corrected(&lattice, &field)?.state.displacement)
     };
     let (cells, halved) = (plate.cells, plate.cells.map(|cells| cells / 2));
-    let direct = Beside {
+    let direct = Comparison {
         corrected: bench.measure("mass-spring, corrected directly", directly)?,
         elements: bench.elements("finite elements, Q1, equal nodes", cells, Element::Q1)?,
     };
-    let climb = Beside {
+    let climb = Comparison {
         corrected: bench.measure("climb, the default", || climb(plate))?,
         elements: bench.elements("finite elements, Q2, equal nodes", halved, Element::Q2)?,
     };
@@ -139,7 +139,7 @@ fn climb(plate: &Plate) -> Result<Vec<f64>, Error> {
     Ok(climb.correct(plate.stretch())?.field.to_nodes())
 }
 
-impl Beside {
+impl Comparison {
     /// The departure over that of the finite elements.
     fn departure(&self) -> f64 {
         self.corrected.departure / self.elements.departure
@@ -152,8 +152,8 @@ impl Beside {
         } else {
             "less accurate than"
         };
-        let [own, other] = [&self.corrected, &self.elements].map(|direction| direction.name);
-        format!("{own}: {accuracy} {other}")
+        let [corrected, elements] = [&self.corrected, &self.elements].map(|method| method.name);
+        format!("{corrected}: {accuracy} {elements}")
     }
 
     fn check(&self, quantity: &str) -> Check {
@@ -163,36 +163,36 @@ impl Beside {
     }
 }
 
-fn outcome(springs: Way, paths: [Beside; 2]) -> Outcome {
+fn outcome(springs: Method, paths: [Comparison; 2]) -> Outcome {
     let [direct, climb] = &paths;
     let checks = vec![
         direct.check("the corrected plate over that of Q1"),
         climb.check("the climb over that of Q2"),
     ];
-    let verdicts: Vec<_> = paths.iter().map(Beside::verdict).collect();
+    let verdicts: Vec<_> = paths.iter().map(Comparison::verdict).collect();
     let claim = Claim {
         claim: "The accuracy of finite elements at 1/20 of their CPU time",
         reproduced: format!("{}. {TIMES}", verdicts.join("; ")),
     };
     let of_paths = paths
         .into_iter()
-        .flat_map(|adjacent| [adjacent.corrected, adjacent.elements]);
-    let ways: Vec<Way> = [springs].into_iter().chain(of_paths).collect();
-    let row = |direction: &Way| {
+        .flat_map(|comparison| [comparison.corrected, comparison.elements]);
+    let methods: Vec<Method> = [springs].into_iter().chain(of_paths).collect();
+    let row = |method: &Method| {
         vec![
-            direction.name.to_owned(),
-            direction.nodes.to_string(),
-            number(direction.departure),
+            method.name.to_owned(),
+            method.nodes.to_string(),
+            number(method.departure),
         ]
     };
     let head = "method | nodes | error of the departure from affine [%]";
-    let times = ways
+    let times = methods
         .iter()
-        .map(|direction| (direction.name.to_owned(), direction.seconds));
+        .map(|method| (method.name.to_owned(), method.seconds));
     Outcome {
         checks,
         claims: vec![claim],
-        blocks: vec![table(head, ways.iter().map(row))],
+        blocks: vec![table(head, methods.iter().map(row))],
         times: times.collect(),
         ..Outcome::default()
     }
@@ -203,19 +203,19 @@ mod tests {
     use super::*;
 
     /// What is said of a direct path with these departures in % next to a climb that is as accurate as its elements.
-    fn said(corrected: f64, elements: f64) -> (String, bool) {
-        let direction = |name, departure| Way {
+    fn verdict(corrected: f64, elements: f64) -> (String, bool) {
+        let method = |name, departure| Method {
             name,
             nodes: 9,
             departure,
             seconds: 1.0,
         };
-        let adjacent = |corrected, elements| Beside {
-            corrected: direction("corrected", corrected),
-            elements: direction("Q1", elements),
+        let comparison = |corrected, elements| Comparison {
+            corrected: method("corrected", corrected),
+            elements: method("Q1", elements),
         };
-        let ways = [adjacent(corrected, elements), adjacent(0.2, 0.2)];
-        let actual = outcome(direction("springs", 30.0), ways);
+        let methods = [comparison(corrected, elements), comparison(0.2, 0.2)];
+        let actual = outcome(method("springs", 30.0), methods);
         let passed = actual.checks.iter().all(Check::passed);
         (actual.claims[0].reproduced.clone(), passed)
     }
@@ -227,7 +227,7 @@ mod tests {
             (0.31, "less accurate than", false),
         ] {
             let expected = format!("corrected: {words} Q1; corrected: as accurate as Q1. {TIMES}");
-            assert_eq!(said(departure, 0.3), (expected, passed));
+            assert_eq!(verdict(departure, 0.3), (expected, passed));
         }
     }
 }

@@ -229,7 +229,7 @@ const EXPLANATION: &str = "Synthetic test curves of known laws, fitted as `mater
     intervals. In the uneven curves the points are concentrated at small strains. The last law of each group is wrong: its \
     misfit has to be distinguished from noise.";
 
-fn told(trials: &[Trial], answer: Answer) -> f64 {
+fn share_of(trials: &[Trial], answer: Answer) -> f64 {
     share(trials.iter().map(|trial| trial.answer == answer))
 }
 
@@ -246,7 +246,7 @@ fn row(subject: &Subject, kind: Kind, trials: &[Trial]) -> Vec<String> {
         kind.correlation.to_string(),
     ];
     let mut row = head.to_vec();
-    row.extend(answers.map(|answer| number(told(trials, answer))));
+    row.extend(answers.map(|answer| number(share_of(trials, answer))));
     row.push(number(mean(
         trials.iter().map(|trial| trial.effective_points),
     )));
@@ -269,7 +269,7 @@ fn checks(kind: Kind, right: &[Trial], wrong: &[Trial]) -> [Check; 3] {
         let name = of("parameters in their 95 % intervals");
         check(name, "%", covered(right))
     };
-    let wrong = told(wrong, Answer::Systematic);
+    let wrong = share_of(wrong, Answer::Systematic);
     [
         held().at_least(90.0, SOURCE),
         held().at_most(99.0, SOURCE),

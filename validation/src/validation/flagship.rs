@@ -52,7 +52,7 @@ struct Plates {
 
 impl Plates {
     /// All shapes on all meshes, of every law.
-    fn compute(&self, progress: Progress) -> Vec<Found> {
+    fn compute(&self, progress: Progress) -> Vec<StretchResult> {
         let mut result = Vec::new();
         for (law, material) in samples::all() {
             progress.tell(law);
@@ -83,7 +83,7 @@ struct Plate {
 }
 
 /// What became of a plate at one stretch.
-struct Found {
+struct StretchResult {
     law: &'static str,
     climbed: Result<ClimbSolution, Error>,
     /// Distance to the direct method's field over the discretisation error; not a number where one of them is missing.
@@ -95,7 +95,7 @@ struct Found {
 }
 
 impl Plate {
-    fn compute(&self) -> Vec<Found> {
+    fn compute(&self) -> Vec<StretchResult> {
         let settings = ClimbSettings::FAST;
         let mut climb = Climb::even(&self.problem, self.cells, DifferenceScheme::Gauss, settings);
         let direct = self.direct();
@@ -107,7 +107,7 @@ impl Plate {
                 (Ok(climbed), Some(direct)) => share(climbed, &direct.displacement),
                 _ => f64::NAN,
             };
-            Found {
+            StretchResult {
                 law: self.law,
                 climbed,
                 share,
@@ -145,7 +145,7 @@ fn share(climbed: &ClimbSolution, direct: &[f64]) -> f64 {
     distance / climbed.discretisation_error
 }
 
-fn outcome(result: &[Found]) -> Outcome {
+fn outcome(result: &[StretchResult]) -> Outcome {
     let lost = result.iter();
     let lost = lost.filter(|result| result.direct && result.climbed.is_err());
     let missing = "plates where the direct method converges and the climb does not";
@@ -170,7 +170,7 @@ fn outcome(result: &[Found]) -> Outcome {
 }
 
 /// The largest share, one that is not a number where no field can be compared.
-fn worst_share<'a>(result: impl Iterator<Item = &'a Found>) -> f64 {
+fn worst_share<'a>(result: impl Iterator<Item = &'a StretchResult>) -> f64 {
     let shares = result
         .map(|result| result.share)
         .filter(|share| !share.is_nan());
@@ -178,13 +178,13 @@ fn worst_share<'a>(result: impl Iterator<Item = &'a Found>) -> f64 {
 }
 
 /// A row for each law: how often each start led to the field, and the largest share.
-fn table_of_laws(result: &[Found]) -> Block {
+fn table_of_laws(result: &[StretchResult]) -> Block {
     let mut laws: Vec<&str> = result.iter().map(|result| result.law).collect();
     laws.dedup();
     let row = |law: &&str| {
-        let own = || result.iter().filter(|result| result.law == *law);
+        let of_law = || result.iter().filter(|result| result.law == *law);
         let mut starts = BTreeMap::new();
-        for climbed in own().filter_map(|result| result.climbed.as_ref().ok()) {
+        for climbed in of_law().filter_map(|result| result.climbed.as_ref().ok()) {
             let by_path = if climbed.provenance.by_load_path.is_empty() {
                 ""
             } else {
@@ -198,13 +198,13 @@ fn table_of_laws(result: &[Found]) -> Block {
             .iter()
             .map(|(start, count)| format!("{start}: {count}"))
             .collect();
-        let neither = own().filter(|result| !result.direct).count();
+        let neither = of_law().filter(|result| !result.direct).count();
         vec![
             (*law).to_owned(),
-            own().count().to_string(),
+            of_law().count().to_string(),
             starts.join("; "),
             neither.to_string(),
-            number(worst_share(own())),
+            number(worst_share(of_law())),
         ]
     };
     let head = "law | plates | start | direct method without a field | largest distance over discretisation error";

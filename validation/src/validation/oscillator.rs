@@ -160,10 +160,10 @@ impl Differences {
 
     /// The corrector with so many unknown constants behind the field: k, or k and c.
     pub fn unknown(&self, constants: usize, settings: CorrectorSettings) -> Corrector<'static> {
-        let (own, other) = (self.clone(), self.clone());
+        let (oscillator, other) = (self.clone(), self.clone());
         let n = self.points;
         let function = Function::new("equation of motion", n - 2, move |z| {
-            own.linearise(z, constants)
+            oscillator.linearise(z, constants)
         });
         let function = function.with_curvature(move |z, psi| other.curvature(z.len(), psi));
         let mut weights = vec![1.0; n];

@@ -52,8 +52,8 @@ pub fn report(title: &str, cases: &[Results]) -> (Vec<Block>, Vec<Figure>) {
             other => other.clone(),
         });
         blocks.extend(placed);
-        let mut own = outcome.blocks.iter();
-        let are_placed = own.any(|block| matches!(block, Block::Figure(..)));
+        let mut case_blocks = outcome.blocks.iter();
+        let are_placed = case_blocks.any(|block| matches!(block, Block::Figure(..)));
         let material = outcome.material.iter();
         blocks.extend(material.flat_map(|material| material.blocks.clone()));
         for figure in &outcome.figures {

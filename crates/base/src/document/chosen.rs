@@ -135,17 +135,17 @@ impl<R: ColumnRole> FoundColumns<R> {
 /// # Errors
 /// A fault with the columns that there are, where there is none of this name, or more than one.
 pub fn column_named(table: &Table, name: &str) -> Result<usize, Diagnostic> {
-    let ways: [&dyn Fn(&Column) -> bool; 3] = [
+    let criteria: [&dyn Fn(&Column) -> bool; 3] = [
         &|column| column.head() == name,
         &|column| column.written == name,
         &|column| column.is_meant(name),
     ];
     let heads: Vec<String> = table.columns.iter().map(Column::head).collect();
     let all = heads.join(", ");
-    for direction in ways {
+    for criterion in criteria {
         let of_name = table.columns.iter().enumerate();
         let of_name: Vec<usize> = of_name
-            .filter(|(_, column)| direction(column))
+            .filter(|(_, column)| criterion(column))
             .map(|(index, _)| index)
             .collect();
         match of_name[..] {

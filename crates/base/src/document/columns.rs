@@ -53,7 +53,12 @@ impl Column {
 
     /// Gives it the unit of a line below the names: brackets behind its name that hold no unit belong to the name.
     pub(super) fn add_unit(&mut self, unit: &str) {
-        if self.unit.as_deref().is_some_and(|own| !is_unit(own)) && is_unit(unit) {
+        if self
+            .unit
+            .as_deref()
+            .is_some_and(|current| !is_unit(current))
+            && is_unit(unit)
+        {
             self.written.clone_from(&self.head);
             self.unit = None;
         }

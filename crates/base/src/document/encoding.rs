@@ -87,7 +87,7 @@ mod tests {
     use super::*;
 
     /// The encoding that is found of a text in an encoding, and what is read.
-    fn found(text: &str, encoding: &'static Encoding) -> (String, &'static str) {
+    fn decoded(text: &str, encoding: &'static Encoding) -> (String, &'static str) {
         let bytes = encoding.encode(text).0;
         let (text, encoding) = decode(&bytes, None).unwrap();
         (text, encoding.name())
@@ -104,7 +104,7 @@ mod tests {
             "Maß",
         ] {
             let expected = (text.to_owned(), "Latin-1 (Windows-1252)");
-            assert_eq!(found(text, WINDOWS_1252), expected);
+            assert_eq!(decoded(text, WINDOWS_1252), expected);
         }
         for text in [
             "时间,位移\n1,2\n",
@@ -113,7 +113,7 @@ mod tests {
             "x（毫米）,y（毫米）",
             "位移 [µm]",
         ] {
-            assert_eq!(found(text, GB18030), (text.to_owned(), "gb18030"));
+            assert_eq!(decoded(text, GB18030), (text.to_owned(), "gb18030"));
         }
     }
 
@@ -133,7 +133,7 @@ mod tests {
                 );
             }
         }
-        assert_eq!(found(text, UTF_8), (text.to_owned(), "UTF-8"));
+        assert_eq!(decoded(text, UTF_8), (text.to_owned(), "UTF-8"));
         assert!(decode(b"\x7fELF\0\0\0\xff\xfe\xf0", None).is_none());
     }
 

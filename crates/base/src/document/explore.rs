@@ -75,13 +75,13 @@ fn only_with(path: &str, readings: &[Reading]) -> Option<(String, Vec<String>)> 
     choices.dedup();
     let decides = |choice: &&&str| {
         let of_choice = || readings.iter().filter(|reading| reading.choice == **choice);
-        let asks = |reading: &Reading| reading.paths.iter().any(|own| own == path);
+        let asks = |reading: &Reading| reading.paths.iter().any(|known| known == path);
         of_choice().any(asks) && !of_choice().all(asks)
     };
     let choice = *choices.iter().rev().find(decides)?;
-    let names = readings
-        .iter()
-        .filter(|reading| reading.choice == choice && reading.paths.iter().any(|own| own == path));
+    let names = readings.iter().filter(|reading| {
+        reading.choice == choice && reading.paths.iter().any(|known| known == path)
+    });
     Some((
         choice.to_owned(),
         names.map(|reading| reading.name.clone()).collect(),
@@ -264,8 +264,8 @@ mod tests {
     fn every_key_is_found_with_what_it_takes_and_when() {
         let result = explore(&read);
         let key = |path: &str| {
-            let own = result.iter().find(|own| own.key.path == path);
-            own.unwrap_or_else(|| panic!("{path}: {result:#?}"))
+            let entry = result.iter().find(|entry| entry.key.path == path);
+            entry.unwrap_or_else(|| panic!("{path}: {result:#?}"))
         };
         let takes = |path: &str| key(path).key.takes.clone();
         let length = [Takes::Quantity(Dimension::Length, Bound::Positive)];

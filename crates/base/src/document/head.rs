@@ -204,10 +204,14 @@ impl<'a> Head<'a> {
         };
         // What cannot be read as a unit of this kind gives way to a statement.
         let stated = self.setting(key, None)?;
-        let own = column.unit.as_deref();
-        let readable = own.filter(|own| stated.is_none() || units::factor(own, dimension).is_ok());
+        let column_unit = column.unit.as_deref();
+        let readable = column_unit.filter(|column_unit| {
+            stated.is_none() || units::factor(column_unit, dimension).is_ok()
+        });
         let unit = match (&stated, readable) {
-            (Some(stated), Some(own)) if units::symbol(stated) == Some(own) => Some(own.to_owned()),
+            (Some(stated), Some(column_unit)) if units::symbol(stated) == Some(column_unit) => {
+                Some(column_unit.to_owned())
+            }
             _ => self.setting(key, readable)?,
         };
         let unit = unit.ok_or_else(|| self.missing(key, example))?;

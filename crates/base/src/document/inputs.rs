@@ -24,15 +24,15 @@ pub fn remember() {
 
 /// Records that a file is read.
 pub fn note(path: &Path) {
-    let own = |read: &mut Option<Vec<PathBuf>>| {
+    let add = |read: &mut Option<Vec<PathBuf>>| {
         if let (Some(read), Ok(path)) = (read.as_mut(), std::fs::canonicalize(path))
             && !read.contains(&path)
         {
             read.push(path);
         }
     };
-    own(&mut all());
-    NOTED.with_borrow_mut(own);
+    add(&mut all());
+    NOTED.with_borrow_mut(add);
 }
 
 /// Calls a function, and returns the files that this thread has read meanwhile, by their absolute paths.

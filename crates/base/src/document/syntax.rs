@@ -97,7 +97,7 @@ fn unquoted(text: &str, at: usize) -> Option<(String, &str)> {
 mod tests {
     use crate::document::{Document, Faults};
 
-    fn told(text: &str) -> String {
+    fn message(text: &str) -> String {
         let faults = Faults::default();
         Document::parse("a.toml", text, &faults);
         faults.finish().expect_err(text).to_string()
@@ -121,8 +121,8 @@ mod tests {
             ("[plate]\na = 1\na = 2\n", "remove one"),
             ("[plate]\na = 1\n[plate]\nb = 2\n", "only once"),
         ] {
-            let told = told(text);
-            assert!(told.contains(expected), "{text}: {told}");
+            let message = message(text);
+            assert!(message.contains(expected), "{text}: {message}");
         }
     }
 
@@ -142,22 +142,22 @@ mod tests {
             let faults = Faults::default();
             let document = Document::parse("a.toml", text, &faults);
             document.root(None, &faults).unknown_keys();
-            let told = faults.finish().expect_err(text).to_string();
+            let message = faults.finish().expect_err(text).to_string();
             assert!(
-                told.contains(line) && told.contains("TOML syntax"),
-                "{told}"
+                message.contains(line) && message.contains("TOML syntax"),
+                "{message}"
             );
             assert!(
-                told.lines().count() <= 3 && !told.contains("unknown"),
-                "{told}"
+                message.lines().count() <= 3 && !message.contains("unknown"),
+                "{message}"
             );
         }
     }
 
     #[test]
     fn a_text_that_is_no_toml_at_all_is_told_in_a_few_lines() {
-        let told = told(&"1,2,3,4\n".repeat(500));
-        assert!(told.lines().count() <= 6, "{told}");
-        assert!(told.contains("further syntax errors"), "{told}");
+        let message = message(&"1,2,3,4\n".repeat(500));
+        assert!(message.lines().count() <= 6, "{message}");
+        assert!(message.contains("further syntax errors"), "{message}");
     }
 }

@@ -66,7 +66,7 @@ pub fn read_text(path: &Path, most: u64, hint: &str) -> Result<String, Error> {
 mod tests {
     use super::*;
 
-    fn told(bytes: &[u8]) -> String {
+    fn message(bytes: &[u8]) -> String {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.toml");
         std::fs::write(&path, bytes).unwrap();
@@ -80,17 +80,17 @@ mod tests {
         let big: Vec<u8> = text.encode_utf16().flat_map(u16::to_be_bytes).collect();
         let marked = [b"\xff\xfe", &*little].concat();
         for bytes in [&little, &big, &marked] {
-            let told = told(bytes);
+            let message = message(bytes);
             assert!(
-                told.contains("UTF-16") && told.contains("save it as UTF-8"),
-                "{told}"
+                message.contains("UTF-16") && message.contains("save it as UTF-8"),
+                "{message}"
             );
         }
-        let latin = told(b"kind = \"plate\"\ntitle = \"Gr\xfc\xdfe\"\n");
+        let latin = message(b"kind = \"plate\"\ntitle = \"Gr\xfc\xdfe\"\n");
         assert!(
             latin.contains("line 2 is not UTF-8") && latin.contains("Latin-1"),
             "{latin}"
         );
-        assert!(!told(b"\x7fELF\0\0\0\xff\xfe\xf0").contains("Latin-1"));
+        assert!(!message(b"\x7fELF\0\0\0\xff\xfe\xf0").contains("Latin-1"));
     }
 }

@@ -98,9 +98,9 @@ impl WhiteRegression {
         variance: f64,
     ) -> Option<(f64, f64)> {
         let (_, solution, effective) = self.solve(held, slope, variance)?;
-        let left = self.square - 2.0 * solution.dot(&self.right)
+        let square = self.square - 2.0 * solution.dot(&self.right)
             + solution.dot(&(&self.normal * &solution));
-        Some((left.max(f64::MIN_POSITIVE), effective))
+        Some((square.max(f64::MIN_POSITIVE), effective))
     }
 
     /// The best δ; `None` where it is not determined.
@@ -143,8 +143,8 @@ impl WhiteRegression {
         const ITERATIONS: usize = 4;
         let mut variance = 1.0;
         for _ in 0..ITERATIONS {
-            let (left, effective) = self.left(held, slope, variance)?;
-            variance = (left / (self.rows - effective).max(1.0)).max(f64::MIN_POSITIVE);
+            let (square, effective) = self.left(held, slope, variance)?;
+            variance = (square / (self.rows - effective).max(1.0)).max(f64::MIN_POSITIVE);
         }
         let (rest, ..) = self.solve(held, slope, variance)?;
         let surprise =
@@ -302,8 +302,8 @@ mod tests {
             .cholesky()
             .unwrap()
             .solve(&design.tr_mul(&values));
-        let left = &values - &design * fitted;
-        (Sites::new(positions), design, left)
+        let residual = &values - &design * fitted;
+        (Sites::new(positions), design, residual)
     }
 
     fn likeliest(correlation: Option<Correlation>, seed: u64) -> CorrelatedNoise {

@@ -123,17 +123,17 @@ impl Whitening {
                     correlation.at(distance(sites.positions[a], sites.positions[b]))
                 }
             };
-            let own =
+            let covariances =
                 DVector::from_iterator(before.len(), before.iter().map(|b| at(*position, *b)));
             let mutual =
                 DMatrix::from_fn(before.len(), before.len(), |i, j| at(before[i], before[j]));
             // Places twice in the data have the same row: their common part is counted once.
-            let weights = mutual.cholesky().map(|factor| factor.solve(&own));
+            let weights = mutual.cholesky().map(|factor| factor.solve(&covariances));
             let weights = weights.unwrap_or_else(|| DVector::zeros(before.len()));
-            let left = (1.0 - own.dot(&weights)).max(1e-6);
+            let variance = (1.0 - covariances.dot(&weights)).max(1e-6);
             Row {
                 position: *position,
-                scale: left.sqrt().recip(),
+                scale: variance.sqrt().recip(),
                 before: before
                     .iter()
                     .copied()

@@ -126,14 +126,14 @@ impl NoiseAlong<'_> {
         let mut sums: Vec<f64> = curve.rows.iter().map(|row| values[*row]).collect();
         let mut before = 0.0;
         for index in 1..sums.len() {
-            let own = values[curve.rows[index - 1]];
-            before = self.decay(curve.gaps[index - 1]) * (before + own);
+            let value = values[curve.rows[index - 1]];
+            before = self.decay(curve.gaps[index - 1]) * (before + value);
             sums[index] += before;
         }
         let mut behind = 0.0;
         for index in (1..sums.len()).rev() {
-            let own = values[curve.rows[index]];
-            behind = self.decay(curve.gaps[index - 1]) * (behind + own);
+            let value = values[curve.rows[index]];
+            behind = self.decay(curve.gaps[index - 1]) * (behind + value);
             sums[index - 1] += behind;
         }
         sums

@@ -125,7 +125,7 @@ impl Triangle {
     }
 
     /// The remaining square of the residual after so many columns.
-    fn left(&self, columns: usize) -> f64 {
+    fn residual_square(&self, columns: usize) -> f64 {
         let last = self.triangle.ncols() - 1;
         let below = self.triangle.column(last).rows_range(columns..).norm();
         below.powi(2).max(f64::MIN_POSITIVE)
@@ -137,13 +137,13 @@ impl Triangle {
         let pivots = self.triangle.diagonal();
         let pivots = pivots.rows(0, columns);
         let design: f64 = pivots.iter().map(|pivot| pivot.abs().ln()).sum();
-        -0.5 * self.log_determinant - design - 0.5 * freedom * self.left(columns).ln()
+        -0.5 * self.log_determinant - design - 0.5 * freedom * self.residual_square(columns).ln()
     }
 
     /// ln of the likelihood after so many columns.
     fn log_unrestricted(&self, columns: usize) -> f64 {
         let rows = self.rows as f64;
-        -0.5 * self.log_determinant - 0.5 * rows * (self.left(columns) / rows).ln()
+        -0.5 * self.log_determinant - 0.5 * rows * (self.residual_square(columns) / rows).ln()
     }
 }
 
@@ -163,7 +163,7 @@ impl CurveResiduals<'_> {
             let noise = self.along(candidate);
             let triangle = Triangle::new(noise, &columns);
             let spread = sized.tr_mul(&noise.product(&sized));
-            let variance = triangle.left(estimates) / freedom;
+            let variance = triangle.residual_square(estimates) / freedom;
             let part = Part {
                 weight: candidate.weight,
                 covariance: &basis.back * spread * basis.back.transpose() * variance,
@@ -201,17 +201,17 @@ impl CurveResiduals<'_> {
         let all = with_functions(basis.columns, functions);
         let estimates = self.design.ncols();
         let extra = all.ncols() - estimates;
-        let left = all.nrows().checked_sub(all.ncols())?;
-        if left < FEWEST || extra == 0 {
+        let remaining = all.nrows().checked_sub(all.ncols())?;
+        if remaining < FEWEST || extra == 0 {
             return None;
         }
-        let freedom = left as f64;
+        let freedom = remaining as f64;
         let columns = self.of_one_size(&with_last(&all, self.residual));
         let tried = |candidate: &Candidate| {
             let noise = self.along(candidate);
             let triangle = Triangle::new(noise, &columns);
-            let without = triangle.left(estimates);
-            let with = triangle.left(estimates + extra);
+            let without = triangle.residual_square(estimates);
+            let with = triangle.residual_square(estimates + extra);
             let ratio = (without - with) / extra as f64 / (with / freedom);
             let log = candidate.weight.ln() + triangle.log_likelihood(freedom);
             (f_tail([extra as f64, freedom], ratio), log)
@@ -355,15 +355,15 @@ fn with_functions(mut columns: DMatrix<f64>, functions: &DMatrix<f64>) -> DMatri
     /// The least part of a function that must remain beside the columns before it.
     const LEAST: f64 = 1e-4;
     for function in functions.column_iter() {
-        let mut own: DVector<f64> = function.into_owned();
-        let size = own.norm();
+        let mut rest: DVector<f64> = function.into_owned();
+        let size = rest.norm();
         for _ in 0..2 {
-            let known = columns.tr_mul(&own);
-            own -= &columns * known;
+            let known = columns.tr_mul(&rest);
+            rest -= &columns * known;
         }
-        let left = own.norm();
-        if left > LEAST * size {
-            columns = with_last(&columns, &(own / left));
+        let norm = rest.norm();
+        if norm > LEAST * size {
+            columns = with_last(&columns, &(rest / norm));
         }
     }
     columns

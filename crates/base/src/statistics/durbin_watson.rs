@@ -93,8 +93,8 @@ mod tests {
         const DRAWS: i32 = 2000;
         for _ in 0..DRAWS {
             let noise = DVector::from_fn(30, |_, _| StandardNormal.sample(&mut random));
-            let left = &noise - &design * solver.solve(&noise, 1e-12).unwrap();
-            let result = DurbinWatson::new(&design, &left, &curves).unwrap();
+            let residual = &noise - &design * solver.solve(&noise, 1e-12).unwrap();
+            let result = DurbinWatson::new(&design, &residual, &curves).unwrap();
             for (count, level) in tails.iter_mut().zip([0.05, 0.5, 0.95]) {
                 *count += i32::from(result.probability < level);
             }
@@ -111,9 +111,9 @@ mod tests {
         let design = DMatrix::from_fn(15, 2, |i, j| (i as f64).powi(j as i32));
         let wave = DVector::from_fn(15, |i, _| (0.5 * i as f64).sin());
         let solver = design.clone().svd(true, true);
-        let left = &wave - &design * solver.solve(&wave, 1e-12).unwrap();
+        let residual = &wave - &design * solver.solve(&wave, 1e-12).unwrap();
         let curve = [Curve::even((0..15).collect())];
-        let result = DurbinWatson::new(&design, &left, &curve).unwrap();
+        let result = DurbinWatson::new(&design, &residual, &curve).unwrap();
         assert!(
             result.statistic < 0.5 && result.probability < 1e-4,
             "{result:?}"

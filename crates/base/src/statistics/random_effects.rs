@@ -64,7 +64,7 @@ impl RandomEffects {
 
     /// By how much the mean of others is larger, with the degrees of freedom of Welch and Satterthwaite.
     pub fn difference(&self, other: &Self) -> Estimate {
-        let squares = [self, other].map(|own| own.standard_error.powi(2));
+        let squares = [self, other].map(|effects| effects.standard_error.powi(2));
         let sum: f64 = squares.iter().sum();
         let parts = squares[0].powi(2) / self.freedom + squares[1].powi(2) / other.freedom;
         let reach = if parts > 0.0 {
@@ -87,20 +87,20 @@ mod tests {
     /// Values that are known exactly have the mean and the standard deviation of any sample.
     #[test]
     fn values_without_errors_are_a_sample() {
-        let own = RandomEffects::new(&[[1.0, 0.0], [2.0, 0.0], [6.0, 0.0]]).unwrap();
+        let effects = RandomEffects::new(&[[1.0, 0.0], [2.0, 0.0], [6.0, 0.0]]).unwrap();
         let deviation = 7.0_f64.sqrt();
-        assert!((own.mean - 3.0).abs() < 1e-12 && (own.between - deviation).abs() < 1e-9);
-        assert!((own.standard_error - deviation / 3.0_f64.sqrt()).abs() < 1e-9);
+        assert!((effects.mean - 3.0).abs() < 1e-12 && (effects.between - deviation).abs() < 1e-9);
+        assert!((effects.standard_error - deviation / 3.0_f64.sqrt()).abs() < 1e-9);
         assert_eq!(RandomEffects::new(&[[1.0, 0.1]]), None);
     }
 
     /// Specimens that do not differ have the weighted mean of their errors.
     #[test]
     fn specimens_that_agree_have_no_spread() {
-        let own = RandomEffects::new(&[[1.0, 0.1], [1.1, 0.2], [0.95, 0.1]]).unwrap();
+        let effects = RandomEffects::new(&[[1.0, 0.1], [1.1, 0.2], [0.95, 0.1]]).unwrap();
         let [w, mean] = [100.0 + 25.0 + 100.0, (100.0 + 27.5 + 95.0) / 225.0];
-        assert!(own.between < 1e-9 && (own.mean - mean).abs() < 1e-12);
-        assert!((own.standard_error - 1.0 / f64::sqrt(w)).abs() < 1e-12);
+        assert!(effects.between < 1e-9 && (effects.mean - mean).abs() < 1e-12);
+        assert!((effects.standard_error - 1.0 / f64::sqrt(w)).abs() < 1e-12);
     }
 
     /// Six specimens a group whose errors are a third of their spread to twice as large: the intervals hold the right mean and difference in 90
@@ -120,8 +120,9 @@ mod tests {
         for _ in 0..2000 {
             let (first, second) = (group(1.0), group(1.5));
             let pairs = [(first.estimate(), 1.0), (first.difference(&second), 0.5)];
-            for (held, (own, right)) in held.iter_mut().zip(pairs) {
-                *held += usize::from(own.interval[0] <= right && right <= own.interval[1]);
+            for (held, (estimate, right)) in held.iter_mut().zip(pairs) {
+                *held +=
+                    usize::from(estimate.interval[0] <= right && right <= estimate.interval[1]);
             }
         }
         assert!(

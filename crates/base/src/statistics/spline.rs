@@ -143,12 +143,12 @@ impl BSpline {
                 } else {
                     values[i - 1] / (to - from)
                 };
-                let own = if i == q {
+                let after = if i == q {
                     0.0
                 } else {
                     values[i] / (end - next)
                 };
-                values[i] = rising * before + falling * own;
+                values[i] = rising * before + falling * after;
             }
         }
         (interval, values)

@@ -80,7 +80,7 @@ impl Unevenness {
         let (places, z): (Vec<_>, Vec<_>) = sound
             .filter_map(|(position, z)| Some((*position, (*z)?)))
             .unzip();
-        let information = Told::of(&places, &z)?;
+        let information = Information::of(&places, &z)?;
         let apart = information.logarithms(VARIANCE, |x, y| 0.5 * (x / y).ln());
         let ratios = information.slopes(&apart);
         let ratio = information.mean_apart(&apart);
@@ -122,7 +122,7 @@ fn mean(values: &[f64]) -> f64 {
 }
 
 /// The information in differences to neighbours.
-struct Told {
+struct Information {
     /// Whether the margin is analysed.
     margin: bool,
     /// q of the places that are used.
@@ -139,7 +139,7 @@ struct Logarithms {
     variance: f64,
 }
 
-impl Told {
+impl Information {
     /// The differences at sound places; `None` where these are too few, or have no noise.
     fn of(positions: &[[f64; 2]], z: &[[f64; 2]]) -> Option<Self> {
         if positions.len() < FEWEST[0] {

@@ -176,8 +176,8 @@ fn meant(unit: &str, dimension: Dimension) -> Option<&'static str> {
         .or_else(|| nearest(unit, dimension.units().filter(|known| known.len() > 2)))
         .or_else(|| {
             let words = SPELLINGS.iter().filter(|(symbol, _)| of_dimension(symbol));
-            let words =
-                words.flat_map(|(symbol, own)| own.iter().map(move |word| (*word, *symbol)));
+            let words = words
+                .flat_map(|(symbol, spellings)| spellings.iter().map(move |word| (*word, *symbol)));
             let words: Vec<_> = words.filter(|(word, _)| word.len() > 3).collect();
             let near = nearest(&lower, words.iter().map(|(word, _)| *word))?;
             words

@@ -57,7 +57,7 @@ fn faults_are_told_apart() {
         parse("15 MPa", Dimension::Length),
         Err(QuantityFault::WrongDimension {
             unit: "MPa".into(),
-            found: Dimension::Stress
+            actual: Dimension::Stress
         })
     );
 }

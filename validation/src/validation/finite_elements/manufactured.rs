@@ -201,7 +201,7 @@ pub struct Pull {
     /// The equilibrium on it.
     pub state: State,
     /// The force of the right side in N.
-    pub found: f64,
+    pub computed: f64,
     /// The exact one.
     pub exact: f64,
     /// The field that a unit motion of the side brings about.
@@ -232,12 +232,12 @@ impl Pull {
             step: "load factor 1".to_owned(),
             fault,
         })?;
-        let found = model.reaction(&state, "right")[0];
+        let computed = model.reaction(&state, "right")[0];
         drop(model);
         Ok(Self {
             mesh,
             state,
-            found,
+            computed,
             exact: side_force(&problem, field),
             influence,
         })
@@ -262,15 +262,15 @@ impl Errors {
         let (mut values, mut gradients) = (Squares::default(), Squares::default());
         each_point(&mesh, |cell, local, position, volume| {
             let weights = mesh.shape(cell).values(local);
-            let found = [0, 1].map(|axis| -> f64 {
+            let computed = [0, 1].map(|axis| -> f64 {
                 let nodes = mesh.cell(cell).iter().zip(&weights);
                 nodes
                     .map(|(node, weight)| weight * u[2 * node + axis])
                     .sum()
             });
-            values.add(volume, &found, &field.displacement(position));
-            let found = mesh.gradient_at(u, cell, local);
-            gradients.add(volume, &found, &field.gradient(position));
+            values.add(volume, &computed, &field.displacement(position));
+            let computed = mesh.gradient_at(u, cell, local);
+            gradients.add(volume, &computed, &field.gradient(position));
         });
         Ok(Self {
             l2: values.relative(),
@@ -287,9 +287,9 @@ struct Squares {
 }
 
 impl Squares {
-    fn add(&mut self, volume: f64, found: &[f64], exact: &[f64]) {
-        for (found, exact) in found.iter().zip(exact) {
-            self.error += volume * (found - exact).powi(2);
+    fn add(&mut self, volume: f64, computed: &[f64], exact: &[f64]) {
+        for (computed, exact) in computed.iter().zip(exact) {
+            self.error += volume * (computed - exact).powi(2);
             self.size += volume * exact.powi(2);
         }
     }

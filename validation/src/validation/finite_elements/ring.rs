@@ -64,7 +64,9 @@ fn compute(cells: usize, progress: Progress) -> Result<Outcome, Error> {
         .checks
         .push(check(what, "–", round).at_most(1e-5, source));
     for stretch in [1.5, 2.0] {
-        outcome.checks.extend(beside_one_dimension(&mesh, stretch)?);
+        outcome
+            .checks
+            .extend(compared_with_one_dimension(&mesh, stretch)?);
     }
     outcome.figures.push(mesh_figure(
         "ring.png",
@@ -76,7 +78,7 @@ fn compute(cells: usize, progress: Progress) -> Result<Outcome, Error> {
 }
 
 /// The bore, the outside and the supports' forces under the pressure that stretches the bore so far in one dimension.
-fn beside_one_dimension(mesh: &Mesh, stretch: f64) -> Result<Vec<Check>, Error> {
+fn compared_with_one_dimension(mesh: &Mesh, stretch: f64) -> Result<Vec<Check>, Error> {
     let ring = Ring {
         radii: [INNER, OUTER],
         slope: &|_| sheet().law.shear_modulus() / 2.0,
@@ -199,7 +201,7 @@ mod tests {
     fn a_bore_stretched_to_twice_its_radius_is_that_of_the_one_dimensional_solution() {
         let mesh = quarter(6, CellShape::Quad9);
         for stretch in [1.5, 2.0] {
-            for check in beside_one_dimension(&mesh, stretch).unwrap() {
+            for check in compared_with_one_dimension(&mesh, stretch).unwrap() {
                 assert!(check.passed(), "{check:?}");
             }
         }

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use super::coverage_trial::{CoverageTrial, Shares};
 use super::noise::CorrelatedDraws;
 use super::subject::{Data, Subject, first_parameter, unknown_grips};
-use super::trials::AIM;
+use super::trials::TARGET;
 use crate::document::{Bound, Section};
 use crate::error::Error;
 use crate::estimation::{
@@ -103,8 +103,8 @@ fn compute(settings: &Settings, progress: Progress) -> Result<Outcome, Error> {
             (0..settings.seeds).into_par_iter().map(trial).collect();
         let shares = Shares::of(&all?);
         rows.push(row(&name, &shares));
-        let own = checks(&name, &shares, wrong == Wrong::Nothing);
-        outcome.checks.extend(own);
+        let case_checks = checks(&name, &shares, wrong == Wrong::Nothing);
+        outcome.checks.extend(case_checks);
     }
     outcome.blocks = vec![Block::paragraph(EXPLANATION), table(HEAD, rows)];
     Ok(outcome)
@@ -137,7 +137,7 @@ fn checks(name: &str, shares: &Shares, right: bool) -> Vec<Check> {
     let [.., not] = shares.answers;
     let refuted = check(format!("{name}: judged not explained"), "%", not);
     if !right {
-        return vec![refuted.at_least(95.0, AIM)];
+        return vec![refuted.at_least(95.0, TARGET)];
     }
     let what = [
         "displacements",
@@ -150,10 +150,10 @@ fn checks(name: &str, shares: &Shares, right: bool) -> Vec<Check> {
     let held = held.filter_map(|(what, share)| Some((what, share?)));
     let check = |(what, share): (&str, f64)| {
         let what = format!("{name}: {what} in their 95 % intervals");
-        check(what, "%", share).at_least(90.0, AIM)
+        check(what, "%", share).at_least(90.0, TARGET)
     };
     let held = held.map(check);
-    std::iter::once(refuted.at_most(5.0, AIM))
+    std::iter::once(refuted.at_most(5.0, TARGET))
         .chain(held)
         .collect()
 }

@@ -18,9 +18,9 @@ pub struct CoverageTrial {
 
 impl CoverageTrial {
     /// The verdict alone.
-    pub fn verdict(found: &FieldEstimate) -> Self {
+    pub fn verdict(field: &FieldEstimate) -> Self {
         Self {
-            answer: found.verdict.answer,
+            answer: field.verdict.answer,
             ..Self::default()
         }
     }
@@ -29,48 +29,48 @@ impl CoverageTrial {
     pub fn new(
         subject: &Subject,
         radius: f64,
-        found: &FieldEstimate,
+        field: &FieldEstimate,
         fitted: &FieldEstimate,
         truth: Option<f64>,
     ) -> Self {
-        let mut trial = Self::verdict(found);
-        if !found.has_intervals() {
+        let mut trial = Self::verdict(field);
+        if !field.has_intervals() {
             return trial;
         }
-        trial.displacements(subject, found);
-        trial.stresses(subject, radius, found);
-        let right = found.forces.iter().find(|force| force.edge == "right");
+        trial.displacements(subject, field);
+        trial.stresses(subject, radius, field);
+        let right = field.forces.iter().find(|force| force.edge == "right");
         if let Some(right) = right {
             trial.count(3, holds(&right.force[0], subject.truth.force));
         }
-        if let (Some((_, _, found)), Some(truth)) = (fitted.parameters.first(), truth) {
-            trial.count(4, holds(found, truth));
+        if let (Some((_, _, parameter)), Some(truth)) = (fitted.parameters.first(), truth) {
+            trial.count(4, holds(parameter, truth));
         }
         trial
     }
 
-    fn displacements(&mut self, subject: &Subject, found: &FieldEstimate) {
+    fn displacements(&mut self, subject: &Subject, field: &FieldEstimate) {
         let nodes = subject.mesh.nodes.iter();
         let exact = nodes.flat_map(|node| subject.truth.displacement(*node));
-        let own = found.displacement.iter().zip(&found.displacement_error);
-        for (exact, (u, error)) in exact.zip(own) {
-            self.count(0, (exact - u).abs() <= found.reach * error);
+        let estimates = field.displacement.iter().zip(&field.displacement_error);
+        for (exact, (u, error)) in exact.zip(estimates) {
+            self.count(0, (exact - u).abs() <= field.reach * error);
         }
     }
 
-    fn stresses(&mut self, subject: &Subject, radius: f64, found: &FieldEstimate) {
+    fn stresses(&mut self, subject: &Subject, radius: f64, field: &FieldEstimate) {
         let (mesh, truth) = (&subject.mesh, &subject.truth);
         let [low, high] = mesh.bounding_box();
         let middle = [0, 1].map(|axis| 0.5 * (low[axis] + high[axis]));
-        for (cell, own) in found.cells.iter().enumerate() {
+        for (cell, estimate) in field.cells.iter().enumerate() {
             let position = mesh.position(cell, mesh.shape(cell).centre());
             let Some(exact) = truth.stress(position).filter(|_| is_away(truth, position)) else {
                 continue;
             };
             let distance = (position[0] - middle[0]).hypot(position[1] - middle[1]);
-            let stress = own.first_piola_kirchhoff_stress.iter();
-            for (exact, (stress, error)) in exact.iter().zip(stress.zip(&own.stress_error)) {
-                let held = (exact - stress).abs() <= found.reach * error;
+            let stress = estimate.first_piola_kirchhoff_stress.iter();
+            for (exact, (stress, error)) in exact.iter().zip(stress.zip(&estimate.stress_error)) {
+                let held = (exact - stress).abs() <= field.reach * error;
                 self.count(1, held);
                 if distance < NEAR * radius {
                     self.count(2, held);
@@ -85,8 +85,8 @@ impl CoverageTrial {
     }
 }
 
-fn holds(found: &Estimate, truth: f64) -> bool {
-    let [low, high] = found.interval;
+fn holds(estimate: &Estimate, truth: f64) -> bool {
+    let [low, high] = estimate.interval;
     (low..=high).contains(&truth)
 }
 
@@ -108,14 +108,14 @@ impl Shares {
         ];
         let mut held = [[0; 2]; 5];
         for trial in all {
-            for (sum, own) in held.iter_mut().zip(trial.held) {
-                (0..2).for_each(|part| sum[part] += own[part]);
+            for (sum, counts) in held.iter_mut().zip(trial.held) {
+                (0..2).for_each(|part| sum[part] += counts[part]);
             }
         }
         Self {
             answers: answers.map(|answer| {
-                let own = all.iter().filter(|trial| trial.answer == answer);
-                100.0 * own.count() as f64 / all.len() as f64
+                let matching = all.iter().filter(|trial| trial.answer == answer);
+                100.0 * matching.count() as f64 / all.len() as f64
             }),
             held,
         }

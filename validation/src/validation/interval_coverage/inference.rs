@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::subject::{Disturbance, MIDDLE, Subject, unknown_grips};
-use super::trials::AIM;
+use super::trials::TARGET;
 use crate::error::Error;
 use crate::estimation::{EdgeCondition, Knowledge, RegressedLaw, Unnamed};
 use crate::validation::case::{Check, check, mean, normal_numbers_of_stream, share};
@@ -31,7 +31,7 @@ pub fn free_edges(subject: &Subject, seeds: u64) -> Result<Check, Error> {
     };
     let right: Result<Vec<bool>, Error> = (0..seeds).into_par_iter().map(right).collect();
     let what = "seeds whose data distinguish the free edges from the grips";
-    Ok(check(format!("{}: {what}", subject.name), "%", share(right?)).at_least(90.0, AIM))
+    Ok(check(format!("{}: {what}", subject.name), "%", share(right?)).at_least(90.0, TARGET))
 }
 
 /// An estimate of the law's first parameter.
@@ -74,7 +74,7 @@ pub fn modulus(
             "%",
             coverage,
         )
-        .at_least(90.0, AIM),
-        check(format!("{name}: mean relative error of {key}"), "%", error).at_most(2.0, AIM),
+        .at_least(90.0, TARGET),
+        check(format!("{name}: mean relative error of {key}"), "%", error).at_most(2.0, TARGET),
     ])
 }

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use super::noise::CorrelatedDraws;
 use super::subject::{Data, Subject, unknown_grips};
-use super::trials::AIM;
+use super::trials::TARGET;
 use super::truth::Truth;
 use crate::document::{Bound, Section};
 use crate::error::Error;
@@ -248,7 +248,7 @@ fn checks(kind: Kind, trials: &[Trial]) -> [Check; 2] {
         covered(trials),
     );
     [
-        held.at_least(90.0, AIM),
-        check(of("the right law ranks first"), "%", first(trials)).at_least(95.0, AIM),
+        held.at_least(90.0, TARGET),
+        check(of("the right law ranks first"), "%", first(trials)).at_least(95.0, TARGET),
     ]
 }

@@ -48,8 +48,8 @@ struct Squares {
 }
 
 impl Squares {
-    fn add(&mut self, weight: f64, found: f64, exact: f64) {
-        self.error += weight * (exact - found).powi(2);
+    fn add(&mut self, weight: f64, computed: f64, exact: f64) {
+        self.error += weight * (exact - computed).powi(2);
         self.size += weight * exact.powi(2);
     }
 
@@ -60,20 +60,20 @@ impl Squares {
 
 impl Trial {
     /// Compares an estimate on `mesh` with the truth.
-    pub fn new(truth: &Truth, mesh: &Mesh, data: &Markers, found: &FieldEstimate) -> Self {
+    pub fn new(truth: &Truth, mesh: &Mesh, data: &Markers, field: &FieldEstimate) -> Self {
         let mut trial = Self {
-            noise: found.noise,
+            noise: field.noise,
             differences: differences(truth, data),
-            displacement_cover: displacement_cover(truth, mesh, found),
+            displacement_cover: displacement_cover(truth, mesh, field),
             ..Self::default()
         };
-        trial.compare_markers(truth, mesh, data, found);
-        trial.compare_stress(truth, mesh, found);
+        trial.compare_markers(truth, mesh, data, field);
+        trial.compare_stress(truth, mesh, field);
         trial
     }
 
     /// The fall of the displacement's deviation in %.
-    pub fn fall(&self) -> f64 {
+    pub fn reduction(&self) -> f64 {
         100.0 * (1.0 - self.after / self.before)
     }
 
@@ -82,13 +82,13 @@ impl Trial {
         truth: &Truth,
         mesh: &Mesh,
         data: &Markers,
-        found: &FieldEstimate,
+        field: &FieldEstimate,
     ) {
         let (mut before, mut after) = (0.0, 0.0);
-        let markers = data.markers.iter().zip(&data.wrong).zip(&found.markers);
+        let markers = data.markers.iter().zip(&data.wrong).zip(&field.markers);
         for ((marker, wrong), estimate) in markers {
             let exact = truth.displacement(marker.position);
-            let there = mesh.displacement_at(&found.displacement, marker.position);
+            let there = mesh.displacement_at(&field.displacement, marker.position);
             for axis in [0, 1] {
                 before += (marker.displacement[axis] - exact[axis]).powi(2);
                 after += (there[axis] - exact[axis]).powi(2);
@@ -105,9 +105,9 @@ impl Trial {
         (self.before, self.after) = ((before / count).sqrt(), (after / count).sqrt());
     }
 
-    fn compare_stress(&mut self, truth: &Truth, mesh: &Mesh, found: &FieldEstimate) {
+    fn compare_stress(&mut self, truth: &Truth, mesh: &Mesh, field: &FieldEstimate) {
         let (mut squares, mut covered, mut count) = (Squares::default(), 0.0, 0.0);
-        for (cell, estimate) in found.cells.iter().enumerate() {
+        for (cell, estimate) in field.cells.iter().enumerate() {
             let centre = mesh.position(cell, mesh.shape(cell).centre());
             let Some(exact) = truth.stress(centre).filter(|_| is_away(truth, centre)) else {
                 continue;
@@ -116,7 +116,7 @@ impl Trial {
             let stress = estimate.first_piola_kirchhoff_stress.iter();
             for ((exact, stress), error) in exact.iter().zip(stress).zip(&estimate.stress_error) {
                 squares.add(size, *stress, *exact);
-                let is_inside = (exact - stress).abs() <= found.reach * error;
+                let is_inside = (exact - stress).abs() <= field.reach * error;
                 covered += f64::from(u8::from(is_inside));
                 count += 1.0;
             }
@@ -126,13 +126,13 @@ impl Trial {
     }
 }
 
-fn displacement_cover(truth: &Truth, mesh: &Mesh, found: &FieldEstimate) -> f64 {
+fn displacement_cover(truth: &Truth, mesh: &Mesh, field: &FieldEstimate) -> f64 {
     let exact = mesh.nodes.iter().flat_map(|node| truth.displacement(*node));
-    let found_values = found.displacement.iter().zip(&found.displacement_error);
+    let field_values = field.displacement.iter().zip(&field.displacement_error);
     let covered = exact
-        .zip(found_values)
-        .filter(|(exact, (u, error))| (exact - *u).abs() <= found.reach * **error);
-    100.0 * covered.count() as f64 / found.displacement.len() as f64
+        .zip(field_values)
+        .filter(|(exact, (u, error))| (exact - *u).abs() <= field.reach * **error);
+    100.0 * covered.count() as f64 / field.displacement.len() as f64
 }
 
 /// Whether a place is farther than a fifth of the width from all corners.

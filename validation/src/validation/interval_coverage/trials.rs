@@ -9,7 +9,7 @@ use crate::estimation::{Knowledge, Robust};
 use crate::validation::case::{Check, Claim, Spread, check, mean, number};
 
 /// Where the limits come from.
-pub const AIM: &str = "aim";
+pub const TARGET: &str = "aim";
 
 /// The heads of the table of trials.
 pub const HEAD: &str = "specimen, noise | estimated noise [mm] | displacement error before [mm] | after [mm] | stress \
@@ -85,23 +85,28 @@ impl Trials {
                 value,
             )
         };
-        let fall = self.spread(Trial::fall).least;
+        let reduction = self.spread(Trial::reduction).least;
         let mut checks = vec![
-            check("reduction of the displacement error, worst seed", fall).at_least(80.0, AIM),
+            check("reduction of the displacement error, worst seed", reduction)
+                .at_least(80.0, TARGET),
         ];
         for (what, cover) in [
             ("displacements", self.mean(|trial| trial.displacement_cover)),
             ("stresses", self.mean(|trial| trial.stress_cover)),
         ] {
             let check = || check(&format!("{what} in their 95 % intervals"), cover);
-            checks.extend([check().at_least(90.0, AIM), check().at_most(99.0, AIM)]);
+            checks.extend([
+                check().at_least(90.0, TARGET),
+                check().at_most(99.0, TARGET),
+            ]);
         }
         if self.noise == MIDDLE {
             let stress = self.spread(|trial| trial.stress).most;
             let raw = self.spread(|trial| trial.differences).least;
             checks.extend([
-                check("stress error, worst seed", stress).at_most(5.0, AIM),
-                check("stress error from finite differences, best seed", raw).at_least(50.0, AIM),
+                check("stress error, worst seed", stress).at_most(5.0, TARGET),
+                check("stress error from finite differences, best seed", raw)
+                    .at_least(50.0, TARGET),
             ]);
         }
         checks
@@ -117,7 +122,7 @@ impl Trials {
                  error from {} to {} % (medians)",
                 self.noise,
                 self.subject,
-                median(Trial::fall),
+                median(Trial::reduction),
                 median(|trial| trial.differences),
                 median(|trial| trial.stress),
             ),
@@ -134,19 +139,19 @@ impl Trials {
             let (flagged, count) = (all().map(|of| of.flagged), all().map(|of| of.count));
             100.0 * flagged.sum::<usize>() as f64 / count.sum::<usize>() as f64
         };
-        let fall = self.spread(Trial::fall).least;
+        let reduction = self.spread(Trial::reduction).least;
         [
-            check("gross errors detected", share(|trial| trial.wrong)).at_least(95.0, AIM),
+            check("gross errors detected", share(|trial| trial.wrong)).at_least(95.0, TARGET),
             check(
                 "sound markers mistaken for gross errors",
                 share(|trial| trial.sound),
             )
-            .at_most(1.0, AIM),
+            .at_most(1.0, TARGET),
             check(
                 "reduction of the displacement error with gross errors, worst seed",
-                fall,
+                reduction,
             )
-            .at_least(80.0, AIM),
+            .at_least(80.0, TARGET),
         ]
     }
 }

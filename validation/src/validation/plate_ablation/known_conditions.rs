@@ -105,7 +105,7 @@ impl Correction {
 
     fn checks(&self) -> Vec<Check> {
         let displacement = "corrected displacement compared with converged finite elements";
-        let left = "remaining departure error without the traction-free edges";
+        let remaining = "remaining departure error without the traction-free edges";
         match self.ablation.known {
             KnownConditions::ALL => vec![
                 check(displacement, "%", self.displacement).at_most(0.1, "publication: below 5 %"),
@@ -113,8 +113,8 @@ impl Correction {
                     .at_most(1.0, "design of the corrector"),
             ],
             GRIPS => {
-                let left = check(left, "%", 100.0 * self.after() / self.before);
-                vec![left.at_least(50.0, "T decides")]
+                let remaining = check(remaining, "%", 100.0 * self.after() / self.before);
+                vec![remaining.at_least(50.0, "T decides")]
             }
             _ => Vec::new(),
         }

@@ -34,7 +34,10 @@ impl Pair {
     /// Distance of the multipliers over those of the first, in %.
     fn multipliers_percent(&self) -> f64 {
         let [springs, affine] = [&self.springs, &self.affine].map(|state| {
-            let values = state.multipliers.iter().map(|own| &own.values[..]);
+            let values = state
+                .multipliers
+                .iter()
+                .map(|multiplier| &multiplier.values[..]);
             values.collect::<Vec<_>>().concat()
         });
         percent(&affine, &springs)

@@ -105,7 +105,7 @@ fn the_first_sheet_that_is_a_table_is_read_and_named() {
 
 #[test]
 fn what_is_no_table_is_refused_with_a_remedy() {
-    let whole = std::fs::read(corpus("three_sheets.xlsx")).unwrap();
+    let archive = std::fs::read(corpus("three_sheets.xlsx")).unwrap();
     for (name, bytes, reason) in [
         ("a.mat", &b"MATLAB 7.3 MAT-file, written \x89HDF"[..], "-v7"),
         (
@@ -113,7 +113,7 @@ fn what_is_no_table_is_refused_with_a_remedy() {
             b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1",
             "save it as .xlsx",
         ),
-        ("a.xlsx", &whole[..whole.len() / 2], "damaged archive"),
+        ("a.xlsx", &archive[..archive.len() / 2], "damaged archive"),
         (
             "a.npy",
             b"\x93NUMPY\x01\x00\x10\x00{'descr': '<c16'",

@@ -15,7 +15,7 @@ fn design(points: usize) -> DMatrix<f64> {
 }
 
 /// What a fit leaves of noise whose neighbours correlate by so much, and the errors of its estimates.
-fn left(design: &DMatrix<f64>, correlation: f64, seed: u64) -> [DVector<f64>; 2] {
+fn residual_and_errors(design: &DMatrix<f64>, correlation: f64, seed: u64) -> [DVector<f64>; 2] {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let mut last: f64 = StandardNormal.sample(&mut random);
     let noise = DVector::from_fn(design.nrows(), |_, _| {
@@ -41,7 +41,7 @@ fn intervals_hold_the_truth_however_the_noise_correlates() {
     for correlation in [0.0, 0.5, 0.9] {
         let mut held = 0;
         for seed in 0..100 {
-            let [residual, errors] = left(&design, correlation, seed);
+            let [residual, errors] = residual_and_errors(&design, correlation, seed);
             let residuals = CurveResiduals {
                 design: &design,
                 residual: &residual,
@@ -62,7 +62,7 @@ fn intervals_hold_the_truth_however_the_noise_correlates() {
 #[test]
 fn one_noise_has_the_covariance_and_the_likelihood_of_full_matrices() {
     let design = design(12);
-    let [residual, _] = left(&design, 0.5, 4);
+    let [residual, _] = residual_and_errors(&design, 0.5, 4);
     let orders = [vec![Curve::even((0..12).collect())]];
     let residuals = CurveResiduals {
         design: &design,
@@ -80,11 +80,12 @@ fn one_noise_has_the_covariance_and_the_likelihood_of_full_matrices() {
         let inverse = r.clone().try_inverse().unwrap();
         let weighted = design.tr_mul(&(&inverse * &design));
         let taken = design.tr_mul(&(&inverse * &residual));
-        let left = residual.dot(&(&inverse * &residual))
+        let sum_of_squares = residual.dot(&(&inverse * &residual))
             - taken.dot(&weighted.clone().cholesky().unwrap().solve(&taken));
-        let likelihood = (r.determinant() * weighted.determinant()).powf(-0.5) * left.powi(-5);
+        let likelihood =
+            (r.determinant() * weighted.determinant()).powf(-0.5) * sum_of_squares.powi(-5);
         (
-            &projector * r * projector.transpose() * (left / 10.0),
+            &projector * r * projector.transpose() * (sum_of_squares / 10.0),
             likelihood,
         )
     };
@@ -124,13 +125,13 @@ fn a_smooth_pattern_is_told_from_noise_that_correlates() {
     };
     for correlation in [0.0, 0.9] {
         let doubted = (0..40).filter(|seed| {
-            let [residual, _] = left(&design, correlation, *seed);
+            let [residual, _] = residual_and_errors(&design, correlation, *seed);
             probability(&residual) < 0.01
         });
         assert!(doubted.count() <= 4, "{correlation}");
     }
     // Six times the noise.
-    let [noise, _] = left(&design, 0.0, 1);
+    let [noise, _] = residual_and_errors(&design, 0.0, 1);
     let wave = DVector::from_fn(40, |i, _| 20.0 * (0.15 * i as f64).sin());
     assert!(probability(&(noise + wave)) < 1e-6);
 }

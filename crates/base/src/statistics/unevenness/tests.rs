@@ -53,8 +53,8 @@ fn noise_that_grows_is_found() {
     for size in sizes {
         for seed in 0..20 {
             let z = noise(seed, &positions, size);
-            let found = Unevenness::found(&positions, &z).expect("uneven");
-            let pairs = positions.iter().zip(&found.factors);
+            let unevenness = Unevenness::found(&positions, &z).expect("uneven");
+            let pairs = positions.iter().zip(&unevenness.factors);
             let mut far: Vec<f64> = pairs
                 .map(|(position, [x, _])| x / size(*position))
                 .collect();
@@ -70,12 +70,12 @@ fn noise_that_grows_is_found() {
 fn few_places_tell_of_noise_that_grows_much() {
     let positions = grid([15, 6]);
     let outwards = |[x, _]: [f64; 2]| 1.0 + 3.0 * ((x - 1014.0) / 14.0).powi(2);
-    let found = (0..200).filter(|seed| {
+    let detected = (0..200).filter(|seed| {
         let z = noise(*seed, &positions, outwards);
         Unevenness::found(&positions, &z).is_some()
     });
-    let found = found.count();
-    assert!(found >= 120, "{found} of 200");
+    let detected = detected.count();
+    assert!(detected >= 120, "{detected} of 200");
 }
 
 /// As of ultrasound, which sees along its beam better than across.
@@ -84,9 +84,9 @@ fn components_of_different_noise_are_found() {
     let positions = grid([20, 10]);
     for seed in 0..20 {
         let mut z = noise(seed, &positions, |_| 1.0);
-        z.iter_mut().flatten().for_each(|own| own[1] *= 0.2);
-        let found = Unevenness::found(&positions, &z).expect("uneven");
-        let [x, y] = found.factors[0];
+        z.iter_mut().flatten().for_each(|vector| vector[1] *= 0.2);
+        let unevenness = Unevenness::found(&positions, &z).expect("uneven");
+        let [x, y] = unevenness.factors[0];
         assert!((x / y / 5.0 - 1.0).abs() < 0.3, "{seed}: {x} {y}");
     }
 }
@@ -97,9 +97,9 @@ fn a_misfit_is_not_taken_for_noise() {
     let positions = grid([40, 20]);
     for seed in 0..20 {
         let mut z = noise(seed, &positions, |_| 1.0);
-        for (own, [x, y]) in z.iter_mut().flatten().zip(&positions) {
-            own[0] += 6.0 * (-((x - 1e3) / 25.0).powi(2)).exp();
-            own[1] += 3.0 * (y / 30.0).sin();
+        for (vector, [x, y]) in z.iter_mut().flatten().zip(&positions) {
+            vector[0] += 6.0 * (-((x - 1e3) / 25.0).powi(2)).exp();
+            vector[1] += 3.0 * (y / 30.0).sin();
         }
         assert_eq!(Unevenness::found(&positions, &z), None, "{seed}");
     }
@@ -145,11 +145,11 @@ fn noise_that_grows_in_one_component_alone_is_found_in_that_one() {
     let along = |[x, _]: [f64; 2]| 10.0_f64.powf((x - 1e3) / 78.0);
     for seed in 0..20 {
         let mut z = noise(seed, &positions, |_| 1.0);
-        for (own, position) in z.iter_mut().flatten().zip(&positions) {
-            own[0] *= along(*position);
+        for (vector, position) in z.iter_mut().flatten().zip(&positions) {
+            vector[0] *= along(*position);
         }
-        let found = Unevenness::found(&positions, &z).expect("uneven");
-        let (first, last) = (found.factors[0], found.factors[799]);
+        let unevenness = Unevenness::found(&positions, &z).expect("uneven");
+        let (first, last) = (unevenness.factors[0], unevenness.factors[799]);
         let [x, y] = [0, 1].map(|axis| last[axis] / first[axis]);
         assert!(x > 4.0 && x < 20.0, "{seed}: {x}");
         assert!((0.5..2.0).contains(&y), "{seed}: {y}");
@@ -173,7 +173,11 @@ fn places_in_a_line_at_one_place_or_without_noise_are_answered() {
 fn factors_have_a_geometric_mean_of_one() {
     let positions = grid([40, 20]);
     let z = noise(1, &positions, |[x, _]| 0.1 + ((x - 1e3) / 20.0).powi(2));
-    let found = Unevenness::found(&positions, &z).expect("uneven");
-    let logarithms = found.factors.iter().flatten().map(|factor| factor.ln());
+    let unevenness = Unevenness::found(&positions, &z).expect("uneven");
+    let logarithms = unevenness
+        .factors
+        .iter()
+        .flatten()
+        .map(|factor| factor.ln());
     assert!(logarithms.sum::<f64>().abs() < 1e-9);
 }

@@ -73,7 +73,7 @@ impl Force {
             element: name.to_owned(),
             shape,
             exact: pull.exact,
-            error: pull.found - pull.exact,
+            error: pull.computed - pull.exact,
             estimate: estimate.force,
         })
     }

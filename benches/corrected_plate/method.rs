@@ -64,14 +64,14 @@ impl fmt::Display for Layout {
 
 /// A way to the field at one stretch.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Way {
+pub enum Method {
     /// Springs and climb.
     Climb(DifferenceScheme),
     /// Finite elements with the equations of a scheme.
     FiniteElements(DifferenceScheme, Guess),
 }
 
-impl Way {
+impl Method {
     pub fn name(self) -> String {
         match self {
             Self::Climb(scheme) => format!("climb, {}", scheme_name(scheme)),
@@ -87,7 +87,7 @@ impl Way {
 pub fn scheme_name(scheme: DifferenceScheme) -> &'static str {
     let named = DifferenceScheme::NAMES
         .iter()
-        .find(|(_, own)| *own == scheme);
+        .find(|(_, candidate)| *candidate == scheme);
     named.expect("a scheme of the table").0
 }
 
@@ -97,7 +97,7 @@ pub fn element_name(scheme: DifferenceScheme) -> &'static str {
 }
 
 /// What a way came to.
-pub struct Found {
+pub struct Solution {
     pub grid: Grid,
     pub field: Field,
     pub force: f64,
@@ -115,21 +115,21 @@ const EVALUATIONS: usize = 3;
 /// Goes one way. `error` is the mesh's own error relative to the departure from the affine stretch, which tells the
 /// finite elements when to stop; the climb finds it out for itself.
 pub fn go(
-    way: Way,
+    method: Method,
     problem: &ClampedPlate,
     layout: Layout,
     stretch: f64,
     error: f64,
-) -> Result<Found, Error> {
+) -> Result<Solution, Error> {
     let start = Instant::now();
-    let scheme = match way {
-        Way::FiniteElements(scheme, guess) => {
+    let scheme = match method {
+        Method::FiniteElements(scheme, guess) => {
             let mut opponent = Opponent::new(problem, layout, scheme);
             let mut u = opponent.start(guess, stretch, error);
             let iterations = opponent.solve(&mut u, stretch, error);
             let force = opponent.force(&u);
             let seconds = start.elapsed().as_secs_f64();
-            return Ok(Found {
+            return Ok(Solution {
                 field: Field::of_nodes(&opponent.grid, &u),
                 grid: opponent.grid,
                 force,
@@ -138,7 +138,7 @@ pub fn go(
                 evaluation: f64::NAN,
             });
         }
-        Way::Climb(scheme) => scheme,
+        Method::Climb(scheme) => scheme,
     };
     let settings = ClimbSettings::FAST;
     let mut climb = if layout.grading == 1.0 {
@@ -154,7 +154,7 @@ pub fn go(
         start.elapsed().as_secs_f64()
     });
     let evaluation = evaluations.fold(f64::INFINITY, f64::min);
-    Ok(Found {
+    Ok(Solution {
         grid: climb.grid().clone(),
         force: climbed.force,
         iterations: climbed.corrections.len(),
