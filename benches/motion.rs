@@ -135,8 +135,8 @@ fn measure(problem: &ClampedPlate, model: &Model, tolerance: f64) -> Result<(), 
         most_steps: gelbench::budget::Budget::USUAL.steps,
     };
     let clock = RefCell::new(vec![Instant::now()]);
-    let message = |_| clock.borrow_mut().push(Instant::now());
-    let history = follow(&motion, settings, &message).map_err(|end| Error::Solve {
+    let record = |_| clock.borrow_mut().push(Instant::now());
+    let history = follow(&motion, settings, &record).map_err(|end| Error::Solve {
         model: model.name.clone(),
         step: end.describe(),
         fault: end.fault,

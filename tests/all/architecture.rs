@@ -119,7 +119,7 @@ fn circles(arrows: &Arrows) -> Vec<String> {
     let result: BTreeSet<String> = arrows
         .keys()
         .map(circle)
-        .filter(|result| !result.is_empty())
+        .filter(|circle| !circle.is_empty())
         .collect();
     result.into_iter().collect()
 }
@@ -158,11 +158,11 @@ fn a_circle_would_be_seen() {
     arrows.insert(module("c"), BTreeSet::from([module("a")]));
     assert_eq!(circles(&arrows), ["a, b, c"]);
     let paths = expand("super::{a::{self, B as C}, d}", &[]);
-    let message: Vec<String> = paths
+    let imports: Vec<String> = paths
         .iter()
         .map(|(path, name)| format!("{} {name}", path.join("::")))
         .collect();
-    assert_eq!(message, ["super::a a", "super::a::B C", "super::d d"]);
+    assert_eq!(imports, ["super::a a", "super::a::B C", "super::d d"]);
 }
 
 #[test]

@@ -105,15 +105,15 @@ fn estimate_with(
             knowledge,
         };
         let (nearest, edges) = free_edges::search(&task, edges.clone())?;
-        if nearest.ends_at_gross_errors() {
-            let markers = nearest.markers();
+        let markers = nearest.markers();
+        if nearest.ends_at_gross_errors(&markers) {
             let ended = FieldEstimate {
                 markers,
                 ..FieldEstimate::default()
             };
             return Ok((ended, noise::OtherNoise::default()));
         }
-        let other = nearest.other_noise(&nearest.markers(), &edges);
+        let other = nearest.other_noise(&markers, &edges);
         if other.is_none() {
             Ok((nearest.into_estimate(&edges)?, other))
         } else {

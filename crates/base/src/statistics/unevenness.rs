@@ -75,7 +75,7 @@ pub struct Unevenness {
 
 impl Unevenness {
     /// The unevenness of vectors of noise at some places, `None` at places that are not sound; `None` where all may be of one size.
-    pub fn found(positions: &[[f64; 2]], noise: &[Option<[f64; 2]>]) -> Option<Self> {
+    pub fn of(positions: &[[f64; 2]], noise: &[Option<[f64; 2]>]) -> Option<Self> {
         let sound = positions.iter().zip(noise);
         let (places, z): (Vec<_>, Vec<_>) = sound
             .filter_map(|(position, z)| Some((*position, (*z)?)))

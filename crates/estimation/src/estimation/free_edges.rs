@@ -53,7 +53,7 @@ pub fn search<'a>(
 /// follow the markers lead to no solution, the search begins with all of them free, and releases those that the data contradict.
 fn decided<'a>(task: &Task<'a>, edges: Vec<Edge>) -> Result<(NearestField<'a>, Vec<Edge>), Error> {
     match nearest(task, &edges, MOST_STEPS) {
-        Ok(field) if field.ends_at_gross_errors() => Ok((field, edges)),
+        Ok(field) if field.ends_at_gross_errors(&field.markers()) => Ok((field, edges)),
         Ok(field) => from_loaded(task, field, edges),
         Err(fault) => from_free(task, edges).map_err(|_| fault),
     }

@@ -133,7 +133,7 @@ impl NearestField<'_> {
                 })
             })
         });
-        Unevenness::found(&observations.positions, &residuals.collect::<Vec<_>>())
+        Unevenness::of(&observations.positions, &residuals.collect::<Vec<_>>())
     }
 
     /// The ratio of the markers' scatter to their stated noise, from the median of the standardised residuals, where

@@ -231,11 +231,11 @@ impl NearestField<'_> {
     }
 
     /// Whether gross errors make up the noise of markers that all have their weight, and the estimate is to end there.
-    pub(super) fn ends_at_gross_errors(&self) -> bool {
+    pub(super) fn ends_at_gross_errors(&self, markers: &[Option<MarkerEstimate>]) -> bool {
         let knowledge = self.equations.task.knowledge;
         knowledge.ends_at_gross_errors
             && knowledge.robust == Robust::No
-            && MarkerEstimate::scatter_by_median(&self.markers()) < MarkerEstimate::GROSS_ERRORS
+            && MarkerEstimate::scatter_by_median(markers) < MarkerEstimate::GROSS_ERRORS
     }
 
     pub(super) fn markers(&self) -> Vec<Option<MarkerEstimate>> {

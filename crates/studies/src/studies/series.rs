@@ -19,6 +19,14 @@ pub const DRAWN: [(ModelKind, Stroke); 3] = [
     (ModelKind::Corrected, Stroke::Ringed),
 ];
 
+/// The axis along which some vectors have the largest component; x where they are none.
+pub fn larger_axis(vectors: impl Iterator<Item = [f64; 2]>) -> usize {
+    let [x, y] = vectors.fold([0.0_f64; 2], |most, vector| {
+        [0, 1].map(|axis| most[axis].max(vector[axis].abs()))
+    });
+    usize::from(y > x)
+}
+
 /// The states of one model.
 pub struct ModelSeries<'a> {
     /// Which model it is.

@@ -49,11 +49,7 @@ impl Section<'_> {
                 .defaulted(format!("{} = {usual}", self.full(key)));
             return usual;
         };
-        let read = |value: &DeValue| match value {
-            DeValue::Boolean(flag) => Some(*flag),
-            _ => None,
-        };
-        self.converted(key, value, "true or false", read)
+        self.converted(key, value, "true or false", DeValue::as_bool)
             .unwrap_or(usual)
     }
 

@@ -46,11 +46,8 @@ impl<'a> Section<'a> {
     /// A truth value.
     pub fn flag(&self, key: &'static str) -> bool {
         self.asks(key, Some(Takes::Flag));
-        self.read(key, "true or false", |value| match value {
-            DeValue::Boolean(flag) => Some(*flag),
-            _ => None,
-        })
-        .unwrap_or_default()
+        self.read(key, "true or false", DeValue::as_bool)
+            .unwrap_or_default()
     }
 
     /// A whole number from `low` to `high`.

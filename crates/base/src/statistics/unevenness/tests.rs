@@ -32,7 +32,7 @@ fn even_noise_is_hardly_ever_uneven() {
         let positions = grid(cells);
         let alarms = (0..400).filter(|seed| {
             let z = noise(*seed, &positions, |_| 0.3);
-            Unevenness::found(&positions, &z).is_some()
+            Unevenness::of(&positions, &z).is_some()
         });
         let alarms = alarms.count();
         assert!(alarms <= 1, "{cells:?}: {alarms} of 400");
@@ -53,7 +53,7 @@ fn noise_that_grows_is_found() {
     for size in sizes {
         for seed in 0..20 {
             let z = noise(seed, &positions, size);
-            let unevenness = Unevenness::found(&positions, &z).expect("uneven");
+            let unevenness = Unevenness::of(&positions, &z).expect("uneven");
             let pairs = positions.iter().zip(&unevenness.factors);
             let mut far: Vec<f64> = pairs
                 .map(|(position, [x, _])| x / size(*position))
@@ -72,7 +72,7 @@ fn few_places_tell_of_noise_that_grows_much() {
     let outwards = |[x, _]: [f64; 2]| 1.0 + 3.0 * ((x - 1014.0) / 14.0).powi(2);
     let detected = (0..200).filter(|seed| {
         let z = noise(*seed, &positions, outwards);
-        Unevenness::found(&positions, &z).is_some()
+        Unevenness::of(&positions, &z).is_some()
     });
     let detected = detected.count();
     assert!(detected >= 120, "{detected} of 200");
@@ -85,7 +85,7 @@ fn components_of_different_noise_are_found() {
     for seed in 0..20 {
         let mut z = noise(seed, &positions, |_| 1.0);
         z.iter_mut().flatten().for_each(|vector| vector[1] *= 0.2);
-        let unevenness = Unevenness::found(&positions, &z).expect("uneven");
+        let unevenness = Unevenness::of(&positions, &z).expect("uneven");
         let [x, y] = unevenness.factors[0];
         assert!((x / y / 5.0 - 1.0).abs() < 0.3, "{seed}: {x} {y}");
     }
@@ -101,7 +101,7 @@ fn a_misfit_is_not_taken_for_noise() {
             vector[0] += 6.0 * (-((x - 1e3) / 25.0).powi(2)).exp();
             vector[1] += 3.0 * (y / 30.0).sin();
         }
-        assert_eq!(Unevenness::found(&positions, &z), None, "{seed}");
+        assert_eq!(Unevenness::of(&positions, &z), None, "{seed}");
     }
 }
 
@@ -131,7 +131,7 @@ fn noise_that_correlates_is_not_uneven() {
                     Some(sum)
                 });
             let smooth: Vec<_> = smooth.collect();
-            Unevenness::found(&positions, &smooth).is_some()
+            Unevenness::of(&positions, &smooth).is_some()
         });
         let alarms = alarms.count();
         assert!(alarms <= 2, "{length}: {alarms} of 40");
@@ -148,7 +148,7 @@ fn noise_that_grows_in_one_component_alone_is_found_in_that_one() {
         for (vector, position) in z.iter_mut().flatten().zip(&positions) {
             vector[0] *= along(*position);
         }
-        let unevenness = Unevenness::found(&positions, &z).expect("uneven");
+        let unevenness = Unevenness::of(&positions, &z).expect("uneven");
         let (first, last) = (unevenness.factors[0], unevenness.factors[799]);
         let [x, y] = [0, 1].map(|axis| last[axis] / first[axis]);
         assert!(x > 4.0 && x < 20.0, "{seed}: {x}");
@@ -163,17 +163,17 @@ fn places_in_a_line_at_one_place_or_without_noise_are_answered() {
     let repeated: Vec<[f64; 2]> = (0..100).map(|i| [f64::from(i / 10), 0.0]).collect();
     for positions in [&line, &one, &repeated] {
         let z = noise(1, positions, |_| 1.0);
-        assert_eq!(Unevenness::found(positions, &z), None);
+        assert_eq!(Unevenness::of(positions, &z), None);
     }
     let grid = grid([10, 10]);
-    assert_eq!(Unevenness::found(&grid, &vec![Some([0.0; 2]); 100]), None);
+    assert_eq!(Unevenness::of(&grid, &vec![Some([0.0; 2]); 100]), None);
 }
 
 #[test]
 fn factors_have_a_geometric_mean_of_one() {
     let positions = grid([40, 20]);
     let z = noise(1, &positions, |[x, _]| 0.1 + ((x - 1e3) / 20.0).powi(2));
-    let unevenness = Unevenness::found(&positions, &z).expect("uneven");
+    let unevenness = Unevenness::of(&positions, &z).expect("uneven");
     let logarithms = unevenness
         .factors
         .iter()

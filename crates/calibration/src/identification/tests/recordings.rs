@@ -44,16 +44,16 @@ fn what_bends_the_functions_and_hides_from_the_misfit_is_named() {
         let actual = identify(&recording, IdentificationSettings::default(), &|_| ()).unwrap();
         let message = asked_for(&actual).unwrap_or_default();
         // Zeros of force and extension are much the same: that of the other may be named first.
-        let own = message
+        let statement = message
             .split(", or alternatively ")
             .find_map(|one| one.strip_prefix(words));
-        let own = own.unwrap_or_else(|| panic!("{words}: {message}"));
-        let numbers: Vec<f64> = own
+        let statement = statement.unwrap_or_else(|| panic!("{words}: {message}"));
+        let numbers: Vec<f64> = statement
             .split([' ', '±'])
             .filter_map(|word| word.parse().ok())
             .collect();
         let [amount, error] = numbers[..] else {
-            panic!("{own}");
+            panic!("{statement}");
         };
         assert!(
             (amount - size).abs() < 5.0 * error,

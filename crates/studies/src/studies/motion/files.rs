@@ -11,7 +11,7 @@ use crate::results::{
     LineChart, PALETTE, Panel, Series, Stroke, csv, springs_csv,
 };
 use crate::studies::points::Probe;
-use crate::studies::series::{ModelSeries, stress_figures};
+use crate::studies::series::{ModelSeries, larger_axis, stress_figures};
 use crate::studies::{ModelKind, SPRINGS_TABLE};
 use crate::units::brief;
 
@@ -41,11 +41,7 @@ impl Motions {
     /// The axis along which the finite elements are displaced farther.
     pub fn axis(&self) -> usize {
         let instants = self.elements.instants().iter();
-        let fields = instants.flat_map(|now| now.displacement.vectors());
-        let [x, y] = fields.fold([0.0_f64; 2], |most, [x, y]| {
-            [most[0].max(x.abs()), most[1].max(y.abs())]
-        });
-        usize::from(y > x)
+        larger_axis(instants.flat_map(|now| now.displacement.vectors()))
     }
 }
 

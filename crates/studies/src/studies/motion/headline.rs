@@ -3,10 +3,10 @@
 use std::collections::BTreeSet;
 
 use super::problem::MovingSheet;
-use super::solution::{ModelMotion, Motions, larger_axis};
+use super::solution::{ModelMotion, Motions};
 use crate::problem::GroupState;
 use crate::results::Block;
-use crate::studies::series::ModelSeries;
+use crate::studies::series::{ModelSeries, larger_axis};
 use crate::units::number;
 
 /// Force and displacement of the measured group at the begin, at their extremes and at the end, and the largest values when most energy is
@@ -38,8 +38,7 @@ pub fn headline(sheet: &MovingSheet, motions: &Motions, reference: &ModelSeries)
 /// and smallest.
 fn telling(states: &[GroupState]) -> BTreeSet<usize> {
     let larger = |value: fn(&GroupState) -> [f64; 2]| {
-        let vectors: Vec<_> = states.iter().map(value).collect();
-        let axis = larger_axis(&vectors);
+        let axis = larger_axis(states.iter().map(value));
         move |state: &GroupState| value(state)[axis]
     };
     let displacement = larger(|state| state.displacement);

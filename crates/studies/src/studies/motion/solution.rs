@@ -11,7 +11,7 @@ use crate::problem::{GroupState, Model, mean_displacement};
 use crate::results::ViscousStress;
 use crate::results::models::ModelStyle;
 use crate::studies::ModelKind;
-use crate::studies::series::{ModelSeries, ModelState};
+use crate::studies::series::{ModelSeries, ModelState, larger_axis};
 
 /// One model's motion.
 pub struct ModelMotion {
@@ -236,16 +236,7 @@ impl MovingSheet {
     }
 
     fn larger_axis(&self, model: &ModelMotion, of: fn(&GroupState) -> [f64; 2]) -> usize {
-        let vectors: Vec<_> = model.groups.iter().map(of).collect();
-        usize::from(self.specimen.grids().is_none() && larger_axis(&vectors) == 1)
+        let is_along_y = larger_axis(model.groups.iter().map(of)) == 1;
+        usize::from(self.specimen.grids().is_none() && is_along_y)
     }
-}
-
-/// The axis along which some vectors have the largest component.
-pub fn larger_axis(vectors: &[[f64; 2]]) -> usize {
-    let largest = |axis: usize| {
-        let sizes = vectors.iter().map(|vector| vector[axis].abs());
-        sizes.fold(0.0, f64::max)
-    };
-    usize::from(largest(1) > largest(0))
 }

@@ -10,7 +10,7 @@ use crate::results::{
     from_rest, positions,
 };
 use crate::studies::file_stem;
-use crate::studies::series::{DRAWN, ModelSeries};
+use crate::studies::series::{DRAWN, ModelSeries, larger_axis};
 use crate::units::Dimension;
 
 /// The values of all fields at a point, in the order of [`SheetField::NAMES`].
@@ -139,14 +139,7 @@ impl<'a> MeasuredFields<'a> {
     pub(super) fn force_axis(&self) -> usize {
         let group = self.group();
         let last = self.models.iter().filter_map(|model| model.states.last());
-        let [x, y] = last.fold([0.0_f64; 2], |most, state| {
-            let force = state
-                .groups
-                .get(group)
-                .map_or([0.0; 2], |group| group.force);
-            [0, 1].map(|axis| most[axis].max(force[axis].abs()))
-        });
-        usize::from(y > x)
+        larger_axis(last.filter_map(|state| Some(state.groups.get(group)?.force)))
     }
 
     fn group(&self) -> usize {
