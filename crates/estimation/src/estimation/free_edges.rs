@@ -5,7 +5,7 @@ use nalgebra::DVector;
 use super::equations::Equations;
 use super::input::{Edge, EdgeCondition, Knowledge, Physics, Task, singular_corners};
 use super::outcome::EdgeForce;
-use super::regression::weighted_square;
+use super::regression::{Fit, Robust, VarianceComponents, weighted_square};
 use super::search::{MOST_STEPS, NearestField};
 use crate::error::Error;
 use crate::statistics::f_tail;
@@ -49,9 +49,13 @@ pub fn search<'a>(
     }
 }
 
-/// Searches with the edges as they are, then with those to be tested freed one after the other, the longest first. Where many edges that
-/// follow the markers lead to no solution, the search begins with all of them free, and releases those that the data contradict.
+/// Searches with all edges to be tested free. Where the data contradict one of them, searches with the edges as they are, then with those to be
+/// tested freed one after the other, the longest first. Where many edges that follow the markers lead to no solution, the search begins with all
+/// of them free, and releases those that the data contradict.
 fn decided<'a>(task: &Task<'a>, edges: Vec<Edge>) -> Result<(NearestField<'a>, Vec<Edge>), Error> {
+    if let Some(confirmed) = all_free(task, &edges) {
+        return Ok(confirmed);
+    }
     match nearest(task, &edges, MOST_STEPS) {
         Ok(field) if field.ends_at_gross_errors(&field.markers()) => Ok((field, edges)),
         Ok(field) => from_loaded(task, field, edges),
@@ -84,6 +88,35 @@ fn open(edges: &[Edge]) -> Vec<usize> {
     open
 }
 
+/// The nearest field with all edges to be tested free, where no edge that is loaded instead, in one linearised step, makes the misfit smaller
+/// than noise would. Gross errors could hide what such an edge does.
+fn all_free<'a>(task: &Task<'a>, given: &[Edge]) -> Option<(NearestField<'a>, Vec<Edge>)> {
+    let open = open(given);
+    if open.is_empty() || task.knowledge.robust != Robust::No {
+        return None;
+    }
+    let mut edges = given.to_vec();
+    for index in &open {
+        edges[*index].condition = EdgeCondition::Free;
+    }
+    let free = nearest(task, &edges, MOST_STEPS).ok()?;
+    if free.ends_at_gross_errors(&free.markers()) {
+        return None;
+    }
+    let level = LEVEL / open.len() as f64;
+    for index in open {
+        let mut loaded = edges.clone();
+        loaded[index].condition = given[index].condition;
+        let scored = Equations::new(task, &loaded).ok()?.score(&free).ok()?;
+        let probability = probability((&scored.fit, &scored.variances), &free);
+        edges[index].probability = Some(probability);
+        if probability < level {
+            return None;
+        }
+    }
+    settle(task, free, edges).ok()
+}
+
 /// Frees edges as long as the data do not contradict it.
 fn from_loaded<'a>(
     task: &Task<'a>,
@@ -106,7 +139,7 @@ fn from_loaded<'a>(
         let trial = nearest_from(task, &freed, TRIAL_STEPS, &nearest_field);
         let probability = trial
             .as_ref()
-            .map_or(0.0, |trial| probability(&nearest_field, trial));
+            .map_or(0.0, |trial| probability(nearest_field.fitted(), trial));
         edges[index].probability = Some(probability);
         if let (Ok(trial), true) = (trial, probability >= level) {
             edges[index].condition = EdgeCondition::Free;
@@ -134,7 +167,7 @@ fn from_free<'a>(
         let Ok(trial) = nearest_from(task, &released, TRIAL_STEPS, &nearest_field) else {
             continue;
         };
-        let probability = probability(&trial, &nearest_field);
+        let probability = probability(trial.fitted(), &nearest_field);
         if probability < level {
             (edges, nearest_field) = (released, trial);
         }
@@ -164,12 +197,13 @@ fn settle<'a>(
 }
 
 /// The probability that noise alone increases the misfit by so much when a free edge is taken as free.
-fn probability(loaded: &NearestField, free: &NearestField) -> f64 {
-    let count = loaded.fit.residual.len() as f64;
-    let more = (loaded.fit.effective - free.fit.effective).max(1.0);
-    let rest = (count - loaded.fit.effective).max(1.0);
-    let (before, after) = (loaded.misfit(loaded), free.misfit(loaded));
-    let noise = before.max(loaded.rounding()).max(f64::MIN_POSITIVE);
+fn probability((loaded, variances): (&Fit, &VarianceComponents), free: &NearestField) -> f64 {
+    let count = loaded.residual.len() as f64;
+    let more = (loaded.effective - free.fit.effective).max(1.0);
+    let rest = (count - loaded.effective).max(1.0);
+    let misfit = |fit: &Fit| free.misfit(fit, variances);
+    let (before, after) = (misfit(loaded), misfit(&free.fit));
+    let noise = before.max(free.rounding(variances)).max(f64::MIN_POSITIVE);
     let ratio = (after - before).max(0.0) / more / (noise / rest);
     f_tail([more, rest], ratio)
 }
@@ -197,18 +231,21 @@ impl NearestField<'_> {
     }
 
     /// Σ w ω r² where every marker is off by a millionth of what they move: data without noise have no more digits.
-    fn rounding(&self) -> f64 {
+    fn rounding(&self, variances: &VarianceComponents) -> f64 {
         const ROUNDING: f64 = 1e-6;
         let observations = self.observations();
         let moved = observations.displacements.iter().flatten().copied();
         let moved = DVector::from_iterator(2 * observations.displacements.len(), moved);
-        let trust = &self.variances.trust;
-        ROUNDING * ROUNDING * weighted_square(&moved, &observations.weights, trust)
+        ROUNDING * ROUNDING * weighted_square(&moved, &observations.weights, &variances.trust)
     }
 
-    /// Σ w ω r² with the trust ω of another search.
-    pub fn misfit(&self, other: &NearestField) -> f64 {
+    /// Σ w ω r² of a regression, with the trust ω of variances.
+    pub fn misfit(&self, fit: &Fit, variances: &VarianceComponents) -> f64 {
         let weights = &self.observations().weights;
-        weighted_square(&self.fit.residual, weights, &other.variances.trust)
+        weighted_square(&fit.residual, weights, &variances.trust)
+    }
+
+    fn fitted(&self) -> (&Fit, &VarianceComponents) {
+        (&self.fit, &self.variances)
     }
 }

@@ -100,7 +100,7 @@ impl Tangent {
     /// # Errors
     /// A [`SolveFault`] when the tangent is singular to working precision.
     pub fn changes(&mut self, residuals: &[Vec<f64>]) -> Result<Vec<Vec<f64>>, SolveFault> {
-        const TOGETHER: usize = 8;
+        const TOGETHER: usize = 16;
         const WORTH_FACTOR: usize = 8;
         let Some((first, others)) = residuals.split_first() else {
             return Ok(Vec::new());

@@ -169,7 +169,7 @@ impl<'a> Frame<'a> {
                 noise.correlation.independent(sites.positions())
             });
         let markers_deviance = if observations.known_noise {
-            nearest.misfit(&nearest) * independent / (2.0 * markers)
+            nearest.misfit(&nearest.fit, &nearest.variances) * independent / (2.0 * markers)
         } else {
             independent * nearest.variances.variance.ln()
         };

@@ -161,7 +161,8 @@ fn an_edge_is_free_only_where_noise_could_have_made_the_misfit() {
                 continue;
             };
             let is_free = edge.condition == EdgeCondition::Free;
-            assert_eq!(is_free, probability >= 0.01, "{edge:?}");
+            // One in a hundred, shared by three edges.
+            assert_eq!(is_free, probability >= 0.01 / 3.0, "{edge:?}");
             weak += usize::from(!is_free && probability > 1e-11);
         }
     }

@@ -185,8 +185,10 @@ impl NearestField<'_> {
         let mut displacement = mesh.displacement_on(&self.field, &fine);
         let mut residual = vec![0.0; displacement.len()];
         let describe = |cell: usize| fine.describe_cell(cell);
+        // The coarser field is near, so that one factor serves for all steps.
         let solved = Newton::new(&pushed, &fixed).and_then(|mut newton| {
-            newton.solve(
+            newton.tangent.at(&pushed, &displacement, &describe)?;
+            newton.solve_near(
                 &pushed,
                 &mut displacement,
                 &mut residual,
