@@ -107,7 +107,8 @@ fn all_free<'a>(task: &Task<'a>, given: &[Edge]) -> Option<(NearestField<'a>, Ve
     for index in open {
         let mut loaded = edges.clone();
         loaded[index].condition = given[index].condition;
-        let scored = Equations::new(task, &loaded).ok()?.score(&free).ok()?;
+        let scored = Equations::new(task, &loaded).ok()?;
+        let scored = scored.score_released(&free).ok()?;
         let probability = probability((&scored.fit, &scored.variances), &free);
         edges[index].probability = Some(probability);
         if probability < level {

@@ -295,7 +295,10 @@ fn with_condition(
     let search = any
         .then(|| Equations::new(&nearest_field.equations.task, &relaxed).ok())
         .flatten()?;
-    search.score(nearest_field).ok()
+    match condition {
+        EdgeCondition::Unknown => search.score_released(nearest_field).ok(),
+        _ => search.score(nearest_field).ok(),
+    }
 }
 
 fn contradicted(together: Option<&Trial>, each: &[Trial], level: f64) -> Option<Contradiction> {

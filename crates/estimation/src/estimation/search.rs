@@ -120,29 +120,26 @@ impl<'a> Equations<'a> {
         nearest_field: &NearestField,
         most: usize,
     ) -> Result<NearestField<'a>, Error> {
-        let (state, variances) = self.near(nearest_field)?;
+        let (mut state, variances) = self.nearby(nearest_field);
+        self.settle(&mut state, ON_THE_WAY)?;
         self.run_from(state, variances, VARIANCE_STEPS, most)
     }
 
-    /// The state near the field of another search, and its variances but for those of the edges.
-    fn near(
-        &mut self,
-        nearest_field: &NearestField,
-    ) -> Result<(SearchState, VarianceComponents), Error> {
+    /// The field of another search with the parameters nearest to it, and its variances but for those of the edges.
+    fn nearby(&self, nearest_field: &NearestField) -> (SearchState, VarianceComponents) {
         let mut parameters = self.nearest_parameters(&nearest_field.field);
         let others = &nearest_field.parameters[nearest_field.equations.motion.parameters()..];
         parameters.extend_from_slice(others);
         parameters.resize(self.parameter_count(), 0.0);
-        let mut state = SearchState {
+        let state = SearchState {
             parameters,
             field: nearest_field.field.clone(),
         };
-        self.settle(&mut state, ON_THE_WAY)?;
         let variances = VarianceComponents {
             smoothing: Vec::new(),
             ..nearest_field.variances.clone()
         };
-        Ok((state, variances))
+        (state, variances)
     }
 
     /// One linearised regression from the field of another search, with its trust of the markers.
@@ -150,9 +147,27 @@ impl<'a> Equations<'a> {
     /// # Errors
     /// As [`Self::run`].
     pub fn score(mut self, nearest_field: &NearestField) -> Result<Scored, Error> {
-        let (state, mut variances) = self.near(nearest_field)?;
-        let linear = self.linearise(&state)?;
-        let fit = self.regress(&state, false, &linear, &mut variances)?;
+        let (mut state, variances) = self.nearby(nearest_field);
+        self.settle(&mut state, ON_THE_WAY)?;
+        self.score_at(&state, variances)
+    }
+
+    /// The same where some edges move as the data say instead of as that search had it: they begin where its field has them.
+    ///
+    /// # Errors
+    /// As [`Self::run`].
+    pub fn score_released(self, nearest_field: &NearestField) -> Result<Scored, Error> {
+        let (state, variances) = self.nearby(nearest_field);
+        self.score_at(&state, variances)
+    }
+
+    fn score_at(
+        mut self,
+        state: &SearchState,
+        mut variances: VarianceComponents,
+    ) -> Result<Scored, Error> {
+        let linear = self.linearise(state)?;
+        let fit = self.regress(state, false, &linear, &mut variances)?;
         Ok(Scored {
             linear,
             fit,

@@ -160,7 +160,6 @@ impl Newton {
         let Some(stiffest) = self.tangent.factorised_stiffest() else {
             return self.solve(potential, u, residual, settings, describe);
         };
-        let start = u.to_vec();
         let energy = Assembly::residual(potential, u, residual);
         let near = Iterate {
             energy: energy.map_err(|fault| inverted(fault, describe))?,
@@ -172,7 +171,6 @@ impl Newton {
         if self.hold_tangent(&mut descent, near, SERVES_NEARBY) {
             return Ok(descent.log);
         }
-        u.copy_from_slice(&start);
         self.solve(potential, u, residual, settings, describe)
     }
 
