@@ -83,7 +83,7 @@ pub fn judge(
     let all =
         all.map(|scored| Model::of_score(&rows, nearest_field, &scored).granting(&rows, &granted));
     let basis = Basis {
-        reference: Reference::new(&rows, noise, &base, all.as_ref(), &columns, mesh_error),
+        reference: Reference::new(&rows, noise, &base, all.as_ref(), &columns),
         rows: &rows,
         base: &base,
     };

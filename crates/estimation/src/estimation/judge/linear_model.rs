@@ -8,16 +8,12 @@ use crate::estimation::equations::{Equations, Linear};
 use crate::estimation::outcome::{Alternative, Trial};
 use crate::estimation::regression::{Fit, VarianceComponents};
 use crate::estimation::search::{NearestField, Scored};
-use crate::estimation::uncertainty::MeshError;
 use crate::statistics::{
     CorrelatedNoise, CorrelatedRegression, WhiteRegression, Whitening, f_tail,
 };
 
 /// Evidence from which on noise counts as correlated: white noise has as much in one of four hundred cases.
 const EVIDENCE: f64 = 12.0;
-
-/// Twice the mesh's own error, squared.
-const MESH: f64 = 4.0;
 
 /// A linear model of the sound markers.
 pub struct Model {
@@ -40,8 +36,6 @@ pub struct Reference {
     noises: Vec<Noise>,
     /// That of the equations; `None` where their parameters are not determined.
     equations: Option<Likelihood>,
-    /// Variance due to the mesh's own error.
-    mesh: f64,
 }
 
 struct Noise {
@@ -53,8 +47,6 @@ struct Noise {
 struct Likelihood {
     /// −2 ln L.
     surprise: f64,
-    /// zᵀR⁻¹z.
-    square: f64,
     /// Parameters that were fitted.
     effective: f64,
 }
@@ -179,24 +171,14 @@ impl Reference {
         base: &Model,
         all: Option<&Model>,
         columns: &[Column],
-        mesh_error: Option<&MeshError>,
     ) -> Self {
         let most = all.unwrap_or(base);
         let flexible = || most.with(rows, columns.iter().map(|(_, design)| design));
         let remaining = noise.and_then(|_| flexible().noises(rows).into_iter().next());
         let mut noises = vec![Noise::new(rows, remaining.as_ref())];
         noises.extend(noise.map(|noise| Noise::new(rows, Some(noise))));
-        let mesh = mesh_error.map_or(0.0, |mesh_error| {
-            let error =
-                DMatrix::from_column_slice(mesh_error.markers.len(), 1, &mesh_error.markers);
-            MESH * rows.scaled(&error).norm_squared() / (2.0 * rows.chosen.len() as f64)
-        });
         let equations = likeliest(&noises, base);
-        Self {
-            noises,
-            equations,
-            mesh,
-        }
+        Self { noises, equations }
     }
 
     /// The factor of one further column that fits best beside the equations.
@@ -222,9 +204,8 @@ impl Reference {
         let count = model.residual.len() as f64;
         let more = (after.effective - before.effective).max(1.0);
         let freedom = (count - after.effective).max(1.0);
-        let variance = after.square / freedom;
         let reduction = ((before.surprise - after.surprise) / count).exp_m1();
-        let gain = reduction.max(0.0) * freedom * variance / (variance + self.mesh);
+        let gain = reduction.max(0.0) * freedom;
         Trial {
             probability: f_tail([more, freedom], gain / more),
             gain: gain - 2.0 * more,
@@ -263,7 +244,6 @@ impl Noise {
             .map_or(0.0, Whitening::log_determinant);
         Some(Likelihood {
             surprise: count * (square / count).ln() + 2.0 * log_determinant,
-            square,
             effective,
         })
     }

@@ -16,7 +16,7 @@ pub struct Rows {
     pub chosen: Vec<usize>,
     /// Their places.
     pub sites: Sites,
-    /// √(w ω)/s of each, s the noise's standard deviation.
+    /// Of each component of each, 1/√(s²/(w ω) + (2 e)²): s the noise's standard deviation, e the mesh's own error there.
     scales: Vec<f64>,
     /// Difference of the largest and the smallest coordinates, in mm.
     pub extent: [f64; 2],
@@ -55,8 +55,12 @@ impl Rows {
             } else {
                 1.0
             };
-            let weights = [0, 1].map(|axis| observations.weights[2 * marker + axis]);
-            weights.map(|weight| (weight * trust / nearest_field.variances.sound).sqrt())
+            [0, 1].map(|axis| {
+                let row = 2 * marker + axis;
+                let mesh = mesh_error.map_or(0.0, |error| 2.0 * error.markers[row]);
+                let weight = observations.weights[row] * trust / nearest_field.variances.sound;
+                weight.sqrt().recip().hypot(mesh).recip()
+            })
         };
         let scales: Vec<f64> = chosen.iter().flat_map(scale).collect();
         let positions: Vec<[f64; 2]> = chosen
