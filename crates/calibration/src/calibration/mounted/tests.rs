@@ -18,13 +18,27 @@ use crate::material::{FungDemiray, HyperelasticLaw};
 const RAKES: &str = "# mounting: rakes\n# tines: 5\n# tine spacing: 1.3 mm\n# tine inset: 0.8 mm\n# tine diameter: 0.3 mm\n\
                      # length: 8.4 mm\n# width: 8.4 mm\n# thickness: 1 mm\n";
 
+fn parsed(text: &str) -> TestData {
+    TestData::parse("a.csv", text, &Statements::new()).unwrap()
+}
+
 /// The record of a law on a mounting, pulled in some ratios up to a strain of the bars, with noise of the forces.
 fn record(
     head: &str,
     law: &Arc<dyn HyperelasticLaw>,
     prestretch: [f64; 2],
-    (most, noise): (f64, f64),
+    most_and_noise: (f64, f64),
 ) -> TestData {
+    parsed(&recorded(head, law, prestretch, most_and_noise))
+}
+
+/// The same as text.
+fn recorded(
+    head: &str,
+    law: &Arc<dyn HyperelasticLaw>,
+    prestretch: [f64; 2],
+    (most, noise): (f64, f64),
+) -> String {
     const ROWS: usize = 12;
     let ratios = [[1.0, 1.0], [1.0, 0.5], [0.5, 1.0]];
     let ratios = ratios.iter().flat_map(|ratio| {
@@ -34,8 +48,8 @@ fn record(
     let names = "strain_1,strain_2,nominal_stress_1 [MPa],nominal_stress_2 [MPa]\n";
     let head =
         format!("# test: biaxial\n# strain measure: nominal\n# strain unit: -\n{head}{names}");
-    let empty = TestData::parse("a.csv", &format!("{head}0.1,0.1,1,1\n"), &Statements::new());
-    let mounting = empty.unwrap().mounted.mounting.unwrap();
+    let empty = parsed(&format!("{head}0.1,0.1,1,1\n"));
+    let mounting = empty.mounted.mounting.unwrap();
     let sheet = MountedSheet::new(mounting, 1);
     let law = SheetLaw {
         law: Arc::clone(law),
@@ -62,7 +76,7 @@ fn record(
             strain[0], strain[1]
         );
     }
-    TestData::parse("a.csv", &text, &Statements::new()).unwrap()
+    text
 }
 
 fn error_percent(fit: &Fit, law: &dyn HyperelasticLaw, strain: f64) -> f64 {
@@ -131,11 +145,11 @@ fn a_cruciform_gives_the_law_of_its_middle() {
 #[test]
 fn the_stretch_as_mounted_is_found_with_the_law() {
     let law: Arc<dyn HyperelasticLaw> = Arc::new(FungDemiray { mu: 0.02, b: 6.0 });
-    let state = |text: &str| {
-        let head = format!("{RAKES}# rest state: {text}\n");
-        record(&head, &law, [1.04, 1.02], (0.12, 0.001))
-    };
-    let estimated = found_again("fung-demiray", &[0.02, 6.0], &[state("estimated")], 3.0);
+    let head = format!("{RAKES}# rest state: estimated\n");
+    let text = recorded(&head, &law, [1.04, 1.02], (0.12, 0.001));
+    let stated = [text.replace("estimated", "1.04,1.02")].map(|text| parsed(&text));
+    let tests = [parsed(&text)];
+    let estimated = found_again("fung-demiray", &[0.02, 6.0], &tests, 3.0);
     let stretches = estimated.quality.zeros.iter().map(|zero| &zero.by);
     for (stretch, right) in stretches.zip([0.04, 0.02]) {
         assert!(
@@ -143,12 +157,12 @@ fn the_stretch_as_mounted_is_found_with_the_law() {
             "{stretch:?}"
         );
     }
-    let names = estimated.fitted_tests(&[state("estimated")]);
+    let names = estimated.fitted_tests(&tests);
     assert!(
         names[0]
             .remarks
             .iter()
             .any(|remark| remark.contains("as mounted"))
     );
-    found_again("fung-demiray", &[0.02, 6.0], &[state("1.04,1.02")], 1.0);
+    found_again("fung-demiray", &[0.02, 6.0], &stated, 1.0);
 }
