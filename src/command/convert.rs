@@ -34,7 +34,7 @@ pub struct ConvertArguments {
 /// Writes test data in other measures and units.
 pub fn convert(arguments: ConvertArguments) -> Outcome {
     let data = TestData::read(&arguments.data, &arguments.reading.reading()?)?;
-    warn(&data.told());
+    warn(&data.all_warnings());
     let text = Conversion {
         stress: arguments.to_stress.unwrap_or(data.stress_measure),
         strain: arguments.to_strain,

@@ -68,14 +68,14 @@ const FEWEST_IN_MOTION: usize = 2;
 /// Least noise, relative to the largest value of its signal: the rounding of sums in floating point.
 const LEAST_NOISE: f64 = 1e-9;
 
-/// Finds K(·) and D(·); `told` is called with what is being computed.
+/// Finds K(·) and D(·); `report` is called with what is being computed.
 ///
 /// # Errors
 /// [`Error::Input`] when the recording does not determine them, or when a form cannot take a shape.
 pub fn identify(
     recording: &Recording,
     settings: IdentificationSettings,
-    told: &dyn Fn(&str),
+    report: &dyn Fn(&str),
 ) -> Result<Identification, Error> {
     for (form, shape) in settings.forms.iter().zip(settings.shapes) {
         if shape != Shape::Free && !matches!(form, Form::Spline(_)) {
@@ -86,16 +86,16 @@ pub fn identify(
             ));
         }
     }
-    told("noise of force and motion");
+    report("noise of force and motion");
     let signals = smooth(&recording.times, &recording.extension, 5)
         .zip(smooth(&recording.times, &recording.force, 3))
         .ok_or_else(|| undetermined("the motion"))?;
-    told("the motion");
+    report("the motion");
     let (joint, start) =
         begin(recording, settings, &signals).ok_or_else(|| undetermined("the motion"))?;
-    let (fit, found) = nearest_fit(&joint, start, told)?;
-    told("intervals");
-    fit.conclude(settings, &found, &signals)
+    let (fit, solution) = nearest_fit(&joint, start, report)?;
+    report("intervals");
+    fit.conclude(settings, &solution, &signals)
         .ok_or_else(|| undetermined("K(·) and D(·)"))
 }
 
@@ -107,29 +107,29 @@ const POOR: f64 = 2.0;
 fn nearest_fit<'a>(
     joint: &'a Joint,
     start: State,
-    told: &dyn Fn(&str),
+    report: &dyn Fn(&str),
 ) -> Result<(Fit<'a>, PenalisedFit), Error> {
     let converged = |start: State| {
         let mut fit = Fit::new(joint, start);
-        fit.improve(told).map(|found| (fit, found))
+        fit.improve(report).map(|solution| (fit, solution))
     };
     let squares = |(fit, _): &(Fit, PenalisedFit)| joint.sum_of_squares(&fit.state);
     let direct = converged(start.clone());
     let observations = 2.0 * joint.recording.times.len() as f64;
-    if matches!(&direct, Ok(found) if squares(found) < POOR * observations) {
+    if matches!(&direct, Ok(pair) if squares(pair) < POOR * observations) {
         return direct;
     }
     let simple = joint.with_polynomials();
     let mut fit = Fit::new(&simple, simple.state(start.motion));
     // Even where it does not converge, its motion is smoother.
-    let _ = fit.improve(told);
+    let _ = fit.improve(report);
     match (direct, converged(joint.state(fit.state.motion))) {
         (Ok(one), Ok(other)) => Ok(if squares(&other) < squares(&one) {
             other
         } else {
             one
         }),
-        (Err(_), Ok(found)) | (Ok(found), Err(_)) => Ok(found),
+        (Err(_), Ok(pair)) | (Ok(pair), Err(_)) => Ok(pair),
         (Err(fault), Err(_)) => Err(fault),
     }
 }
@@ -209,7 +209,7 @@ impl<'a> Fit<'a> {
     }
 
     /// Gauss–Newton steps until convergence. The functions are fitted first with the motion fixed.
-    fn improve(&mut self, told: &dyn Fn(&str)) -> Result<PenalisedFit, Error> {
+    fn improve(&mut self, report: &dyn Fn(&str)) -> Result<PenalisedFit, Error> {
         let unknown = || undetermined("K(·) and D(·)");
         let functions = &self.joint.functions;
         let fixed = self.joint.with_motion_fixed(&self.state);
@@ -219,20 +219,20 @@ impl<'a> Fit<'a> {
         self.state.functions = first.coefficients;
         let mut merit = f64::INFINITY;
         for step in 0..MOST_STEPS {
-            told(&format!("K(·) and D(·), step {}", step + 1));
+            report(&format!("K(·) and D(·), step {}", step + 1));
             let linearised = self.joint.linearise(&self.state).map_err(|_| unknown())?;
             if step < CHOICES {
                 let counts = [self.observations(), linearised.motion_count() as f64];
                 let from = &self.state.functions;
                 self.exponents = linearised.reduced.choose(from, functions, counts);
             }
-            let found = linearised
+            let solution = linearised
                 .reduced
                 .minimum(&self.state.functions, functions, self.exponents)
                 .ok_or_else(unknown)?;
-            let next = self.advance(&linearised, &found);
+            let next = self.advance(&linearised, &solution);
             if step >= CHOICES && merit - next < SETTLED * next / self.observations() {
-                return Ok(found);
+                return Ok(solution);
             }
             merit = next;
         }
@@ -243,11 +243,11 @@ impl<'a> Fit<'a> {
     }
 
     /// Halves a step until the penalised sum of squares does not rise, takes it, and returns that sum.
-    fn advance(&mut self, linearised: &JointEquations, found: &PenalisedFit) -> f64 {
+    fn advance(&mut self, linearised: &JointEquations, solution: &PenalisedFit) -> f64 {
         const HALVINGS: i32 = 12;
-        let functions = &found.coefficients - &self.state.functions;
+        let functions = &solution.coefficients - &self.state.functions;
         let motion = linearised.motion_step(&functions);
-        let before = self.merit(&self.state, found);
+        let before = self.merit(&self.state, solution);
         let mut length = 1.0;
         for _ in 0..HALVINGS {
             let along = self.state.motion.iter().zip(&motion);
@@ -255,7 +255,7 @@ impl<'a> Fit<'a> {
                 motion: along.map(|(c, step)| c + length * step).collect(),
                 functions: &self.state.functions + &functions * length,
             };
-            let merit = self.merit(&next, found);
+            let merit = self.merit(&next, solution);
             if merit <= before {
                 self.state = next;
                 return merit;
@@ -265,31 +265,31 @@ impl<'a> Fit<'a> {
         before
     }
 
-    fn merit(&self, state: &State, found: &PenalisedFit) -> f64 {
-        let penalty = state.functions.dot(&(&found.penalty * &state.functions));
+    fn merit(&self, state: &State, solution: &PenalisedFit) -> f64 {
+        let penalty = state.functions.dot(&(&solution.penalty * &state.functions));
         self.joint.sum_of_squares(state) + penalty
     }
 
     fn conclude(
         &self,
         settings: IdentificationSettings,
-        found: &PenalisedFit,
+        solution: &PenalisedFit,
         signals: &(SignalSpline, SignalSpline),
     ) -> Option<Identification> {
         let joint = self.joint;
-        let used = self.state.motion.len() as f64 + found.degrees.iter().sum::<f64>();
+        let used = self.state.motion.len() as f64 + solution.degrees.iter().sum::<f64>();
         let freedom = self.observations() - used;
         let misfit = joint.sum_of_squares(&self.state) / freedom;
         let mut first = 0;
         let mut functions = [0, 1].map(|index| {
             let basis = joint.functions[index];
-            let (own, count) = (first, basis.count());
+            let (start, count) = (first, basis.count());
             first += count;
             Function {
                 basis,
-                coefficients: self.state.functions.rows(own, count).into_owned(),
-                covariance: found.inverse.view((own, own), (count, count)) * misfit,
-                degrees: found.degrees[index],
+                coefficients: self.state.functions.rows(start, count).into_owned(),
+                covariance: solution.inverse.view((start, start), (count, count)) * misfit,
+                degrees: solution.degrees[index],
                 reach: [0.0; 2],
             }
         });
@@ -309,13 +309,13 @@ impl<'a> Fit<'a> {
             verdict: RecordingVerdict::default(),
             warnings: Vec::new(),
         };
-        Some(self.judged(identification, found, signals))
+        Some(self.judged(identification, solution, signals))
     }
 
     /// The result with its verdict; without intervals where it is not explained.
     fn judged(
         &self,
-        mut found: Identification,
+        mut identification: Identification,
         fit: &PenalisedFit,
         signals: &(SignalSpline, SignalSpline),
     ) -> Identification {
@@ -323,7 +323,7 @@ impl<'a> Fit<'a> {
         let corners = corners(&joint.recording.extension);
         // Where a spline cannot follow the motion, instants of the recording would wrongly seem suspect.
         let suspects = if !signals.0.coarse && !signals.1.coarse && corners.is_none() {
-            examine(joint, &self.state, &found, fit)
+            examine(joint, &self.state, &identification, fit)
         } else {
             Vec::new()
         };
@@ -333,13 +333,13 @@ impl<'a> Fit<'a> {
             corners,
             suspects: &suspects,
         };
-        found.verdict = evidence.verdict(&found);
-        found.warnings = notes(&found, joint.recording);
-        if !found.is_explained() {
-            found.stiffness.withhold_intervals();
-            found.damping.withhold_intervals();
+        identification.verdict = evidence.verdict(&identification);
+        identification.warnings = notes(&identification, joint.recording);
+        if !identification.is_explained() {
+            identification.stiffness.withhold_intervals();
+            identification.damping.withhold_intervals();
         }
-        found
+        identification
     }
 
     fn motion(&self) -> FittedMotion {

@@ -26,7 +26,11 @@ pub struct Provenance {
 
 /// The text of a card that `gelbench materials refit` can make again.
 pub fn card_text(fit: &Fit, tests: &[TestData], provenance: &Provenance) -> String {
-    if let Some(base) = fit.softened.as_ref().and_then(|own| own.card.as_deref()) {
+    if let Some(base) = fit
+        .softened
+        .as_ref()
+        .and_then(|softened| softened.card.as_deref())
+    {
         return softened_card(base, fit, provenance);
     }
     let files = provenance.files.iter().map(|file| file_name(file));
@@ -212,10 +216,10 @@ fn viscosity(text: &mut String, fit: &Fit) {
     text.push_str("\n[viscosity]\nrelaxation = [\n");
     for (term, one) in relaxed.material.relaxation.iter().enumerate() {
         let [share, time] = [0, 1].map(|part| error(fit, fit.of_law + 2 * term + part));
-        let (own, tau) = (one.share, one.time);
+        let (weight, tau) = (one.share, one.time);
         let _ = writeln!(
             text,
-            "    {{ share = {own}, time = \"{tau} s\" }}, # share: {share}; time in s: {time}"
+            "    {{ share = {weight}, time = \"{tau} s\" }}, # share: {share}; time in s: {time}"
         );
     }
     text.push_str("]\n");

@@ -96,7 +96,10 @@ pub struct FurtherProtocol {
 impl Protocols {
     /// The root of the mean square of all errors of prediction in % of the largest stress.
     pub fn all_left_out_percent(&self) -> f64 {
-        let squares = self.left_out_percent.iter().map(|own| own * own);
+        let squares = self
+            .left_out_percent
+            .iter()
+            .map(|percent| percent * percent);
         (squares.sum::<f64>() / self.left_out_percent.len() as f64).sqrt()
     }
 }
@@ -109,7 +112,10 @@ impl Fit {
 
     /// The values that were fitted: those of the law, and behind them those of the state at rest.
     pub(in crate::calibration) fn values(&self) -> Vec<f64> {
-        let of_law = self.law_parameters().iter().map(|own| own.value);
+        let of_law = self
+            .law_parameters()
+            .iter()
+            .map(|parameter| parameter.value);
         let of_zeros = self.quality.zeros.iter().map(|zero| zero.value);
         of_law.chain(of_zeros).collect()
     }
@@ -151,8 +157,11 @@ impl Fit {
     /// The tests as they were fitted: those of the sheet's middle where it was solved on its mounting, with the zeros that were found
     /// together with the law.
     pub fn fitted_tests(&self, tests: &[TestData]) -> Vec<TestData> {
-        let own = self.mounted.as_ref().map_or(tests, |own| &own.tests);
-        let mut moved = own.to_vec();
+        let tests = self
+            .mounted
+            .as_ref()
+            .map_or(tests, |mounted| &mounted.tests);
+        let mut moved = tests.to_vec();
         for zero in &self.quality.zeros {
             for (number, test) in moved.iter_mut().enumerate() {
                 *test = zero.applied(number, test);

@@ -49,7 +49,7 @@ impl Group {
     ) -> Result<Self, Error> {
         check_measures(tests)?;
         let first = &tests[0];
-        if let Some(other) = tests.iter().find(|own| own.test != first.test) {
+        if let Some(other) = tests.iter().find(|test| test.test != first.test) {
             let message = format!(
                 "{} is a test of another kind than {}: {} and {}",
                 other.name,
@@ -143,7 +143,8 @@ impl Group {
         };
         let specimens: Vec<Vec<[f64; 2]>> = self.fits.iter().zip(&self.tests).map(of_fit).collect();
         let state = |(number, one): (usize, &Observation)| {
-            let stresses: Vec<[f64; 2]> = specimens.iter().map(|own| own[number]).collect();
+            let stresses: Vec<[f64; 2]> =
+                specimens.iter().map(|specimen| specimen[number]).collect();
             GroupState {
                 strains: one.strains,
                 axis: one.axis,
@@ -236,7 +237,7 @@ mod tests {
         for (one, two) in states[0].iter().zip(&states[1]) {
             let stresses = right(0.01, one.strains, one.axis);
             let mean = stresses.iter().sum::<f64>() / 3.0;
-            let square: f64 = stresses.iter().map(|own| (own - mean).powi(2)).sum();
+            let square: f64 = stresses.iter().map(|stress| (stress - mean).powi(2)).sum();
             let between = (square / 2.0).sqrt();
             let scale = 2e-4 + 0.02 * mean;
             assert!((one.stress.mean - mean).abs() < scale, "{one:?} {mean}");

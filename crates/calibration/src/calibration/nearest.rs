@@ -116,7 +116,7 @@ impl<D: Fn(&Observation) -> (Vec<f64>, f64)> About<'_, D> {
         bounds.extend(response.zeros().iter().map(|zero| zero.bounds()));
         let pairs = parameters.iter().zip(self.start);
         let mut sizes: Vec<f64> = pairs
-            .map(|(own, value)| size(own, *value, stiffness))
+            .map(|(parameter, value)| size(parameter, *value, stiffness))
             .collect();
         sizes.resize(bounds.len(), SIZE_OF_ZERO);
         let mut response = response.with_linear(self.start.to_vec(), &self.linear);

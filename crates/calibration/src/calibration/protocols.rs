@@ -18,7 +18,7 @@ use super::regression::{Elastic, Misfit, Response, Zero};
 
 /// What the protocols of biaxial tests say of a law that was fitted to them; `None` of other tests, or of a single protocol.
 pub fn protocols(fit: &Fit, tests: &[TestData]) -> Option<Protocols> {
-    let tests = fit.mounted.as_ref().map_or(tests, |own| &own.tests);
+    let tests = fit.mounted.as_ref().map_or(tests, |mounted| &mounted.tests);
     let is_biaxial = tests.iter().all(|test| test.test == Test::Biaxial);
     let of_record = |zero: &Zero| matches!(zero, Zero::Record { .. });
     if !is_biaxial || Zero::of(tests).iter().any(of_record) {
@@ -84,8 +84,8 @@ fn further(fit: &Fit, protocols: &[TestData]) -> Option<FurtherProtocol> {
     let noise = quality.noise.as_ref().filter(|_| quality.has_intervals())?;
     let covariance = noise.covariance();
     let share = |index: usize| {
-        let own = &quality.estimates[index];
-        own.standard_error / own.value.abs()
+        let estimate = &quality.estimates[index];
+        estimate.standard_error / estimate.value.abs()
     };
     let known = (0..fit.parameters.len()).filter(|index| share(*index).is_finite());
     let widest = known.max_by(|a, b| share(*a).total_cmp(&share(*b)))?;
@@ -135,10 +135,10 @@ fn variance(fit: &Fit, protocols: &[TestData], values: usize) -> f64 {
 fn protocol(fit: &Fit, protocols: &[TestData], ratio: [f64; 2]) -> Option<TestData> {
     let rows = protocols
         .iter()
-        .map(|own| own.observations.len())
+        .map(|protocol| protocol.observations.len())
         .sum::<usize>();
     let rows = (rows / protocols.len() / 2).max(2);
-    let all = protocols.iter().flat_map(|own| &own.observations);
+    let all = protocols.iter().flat_map(|protocol| &protocol.observations);
     let largest = [0, 1].map(|axis| {
         let strains = all.clone().map(|one| one.strains[axis]);
         ratio[axis] * strains.fold(0.0, f64::max)
@@ -164,8 +164,8 @@ fn protocol(fit: &Fit, protocols: &[TestData], ratio: [f64; 2]) -> Option<TestDa
     // What is measured is linear in the stress of the law at the strains from rest.
     let [zero, unit] = [0.0, most].map(|stress| [of_rows(stress)]);
     let values = fit.values();
-    let moved = [&zero, &unit].map(|own| {
-        let response = Elastic::new(fit.law, own).with_zeros();
+    let moved = [&zero, &unit].map(|tests| {
+        let response = Elastic::new(fit.law, tests).with_zeros();
         let rows = &response.moved_tests(&values)[0].observations;
         let stresses: Vec<f64> = rows.iter().map(|one| one.stress).collect();
         (stresses, response.predicted(&values).concat())
@@ -192,13 +192,13 @@ mod tests {
     const TISSUE: [f64; 5] = [0.01, 0.05, 3.0, 0.1, 0.6];
 
     /// Protocols up to a strain of 0.2.
-    fn made(ratios: &[[f64; 2]]) -> [TestData; 1] {
+    fn biaxial_test(ratios: &[[f64; 2]]) -> [TestData; 1] {
         let law = ("holzapfel-gasser-ogden", &TISSUE[..]);
         [record(law, (ratios, 0.2), (0.002, 0))]
     }
 
     fn protocols(law: &str, ratios: &[[f64; 2]]) -> Protocols {
-        let tests = made(ratios);
+        let tests = biaxial_test(ratios);
         let fit = fit(Law::named(law).unwrap(), &tests, &FitSettings::default()).unwrap();
         fit.protocols.unwrap()
     }
@@ -224,16 +224,16 @@ mod tests {
         let [today, then] = before.standard_error_percent;
         assert!(then < 0.7 * today, "{before:?}");
         let share = before.stretches.map(|stretch| (stretch - 1.0) / 0.2);
-        let tests = made(&[&ratios[..], &[share]].concat());
+        let tests = biaxial_test(&[&ratios[..], &[share]].concat());
         let law = Law::named("holzapfel-gasser-ogden").unwrap();
         let after = fit(law, &tests, &FitSettings::default()).unwrap();
         let index = after
             .parameters
             .iter()
-            .position(|own| own.key == before.key)
+            .position(|parameter| parameter.key == before.key)
             .unwrap();
-        let own = &after.quality.estimates[index];
-        let percent = 100.0 * own.standard_error / own.value;
+        let estimate = &after.quality.estimates[index];
+        let percent = 100.0 * estimate.standard_error / estimate.value;
         assert!(
             percent < 1.5 * then && percent > then / 1.5,
             "{percent} {before:?}"

@@ -50,9 +50,9 @@ pub fn rank(tests: &[TestData], settings: &FitSettings) -> (Vec<Fit>, Vec<String
     let eligible: Vec<&'static Law> = Law::fitted()
         .filter(|law| ![MARLOW_TABLE, SWELLING].contains(&law.name))
         .filter(|law| {
-            let own = law.with_values(&[], measure, MEASURE).0;
+            let model = law.with_values(&[], measure, MEASURE).0;
             // Stresses of the usual tests alone do not determine how a body changes its volume.
-            own.bulk_modulus().is_none() && (both_axes || own.is_isotropic())
+            model.bulk_modulus().is_none() && (both_axes || model.is_isotropic())
         })
         .collect();
     let outcomes: Vec<Result<Fit, Error>> = eligible

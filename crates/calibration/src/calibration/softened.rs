@@ -43,12 +43,12 @@ pub fn cycles(
     let mut most = data.energy_before(law);
     let ends = record.ends();
     let of_cycle = |pair: &[usize]| {
-        let own = &record.rows[pair[0]..=pair[1]];
-        let [first, last] = [own[0].energy, own[own.len() - 1].energy];
+        let rows = &record.rows[pair[0]..=pair[1]];
+        let [first, last] = [rows[0].energy, rows[rows.len() - 1].energy];
         let before = most.max(first);
-        most = own.iter().fold(before, |most, row| most.max(row.energy));
-        let [measured, fitted] = record.work(own);
-        let far = farthest(own.iter().map(|row| row.strain));
+        most = rows.iter().fold(before, |most, row| most.max(row.energy));
+        let [measured, fitted] = record.work(rows);
+        let far = farthest(rows.iter().map(|row| row.strain));
         SofteningCycle {
             test: data.name.clone(),
             stretch: 1.0 + far,

@@ -98,7 +98,7 @@ fn starts(of_law: &[f64], bounds: &[[f64; 2]], largest: f64) -> Vec<Vec<f64>> {
 fn softened(fit: Fit, base: Base, tests: &[TestData], softening: Softening) -> Fit {
     let virgin = fit.fitted;
     let records = tests.iter().zip(&fit.predicted);
-    let cycles = records.flat_map(|(data, own)| cycles(data, &*virgin, softening, own));
+    let cycles = records.flat_map(|(data, predicted)| cycles(data, &*virgin, softening, predicted));
     let softened = Softened {
         softening,
         card: match base {

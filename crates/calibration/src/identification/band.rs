@@ -91,8 +91,8 @@ impl Function {
         const STEPS: usize = 400;
         let positions = self.positions(STEPS + 1);
         let angle = |pair: &[f64]| {
-            let own = self.product(pair[0], pair[0]) * self.product(pair[1], pair[1]);
-            let cosine = self.product(pair[0], pair[1]) / own.sqrt();
+            let squares = self.product(pair[0], pair[0]) * self.product(pair[1], pair[1]);
+            let cosine = self.product(pair[0], pair[1]) / squares.sqrt();
             (2.0 - 2.0 * cosine).max(0.0).sqrt()
         };
         positions.windows(2).map(angle).sum()

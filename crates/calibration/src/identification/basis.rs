@@ -32,8 +32,8 @@ impl Form {
         match (text, number("polynomial-"), number("spline-")) {
             ("constant", ..) => Ok(Self::Constant),
             ("spline", ..) => Ok(Self::SPLINE),
-            (_, Some(own), _) if (1..=degree).contains(&own) => Ok(Self::Polynomial(own)),
-            (_, _, Some(own)) if (fewest..=most).contains(&own) => Ok(Self::Spline(own)),
+            (_, Some(order), _) if (1..=degree).contains(&order) => Ok(Self::Polynomial(order)),
+            (_, _, Some(parts)) if (fewest..=most).contains(&parts) => Ok(Self::Spline(parts)),
             _ => Err(UnknownForm),
         }
     }

@@ -143,7 +143,7 @@ impl Joint<'_> {
     }
 
     /// The residuals of both signals, over their noise.
-    fn left(&self, instant: usize, at: &Instant) -> [f64; 2] {
+    fn residuals(&self, instant: usize, at: &Instant) -> [f64; 2] {
         [
             (self.recording.extension[instant] - at.extension) / self.noise[0],
             (self.recording.force[instant] - at.force) / self.noise[1],
@@ -153,8 +153,8 @@ impl Joint<'_> {
     /// Sum of squares of all residuals, over the noise.
     pub fn sum_of_squares(&self, state: &State) -> f64 {
         let square = |instant| -> f64 {
-            let left = self.left(instant, &self.instant(instant, state));
-            left[0] * left[0] + left[1] * left[1]
+            let residuals = self.residuals(instant, &self.instant(instant, state));
+            residuals[0] * residuals[0] + residuals[1] * residuals[1]
         };
         (0..self.recording.times.len()).map(square).sum()
     }
@@ -165,8 +165,8 @@ impl Joint<'_> {
         let mut reduced = NormalEquations::new(count);
         for instant in 0..self.recording.times.len() {
             let at = self.instant(instant, state);
-            let [_, left] = self.left(instant, &at);
-            reduced.add(&(&at.by_functions / self.noise[1]), left);
+            let [_, residual] = self.residuals(instant, &at);
+            reduced.add(&(&at.by_functions / self.noise[1]), residual);
         }
         reduced
     }
@@ -200,19 +200,19 @@ impl Joint<'_> {
         let mut pull = vec![0.0; motions];
         for instant in 0..self.recording.times.len() {
             let at = self.instant(instant, state);
-            let left = self.left(instant, &at);
+            let residuals = self.residuals(instant, &at);
             let (first, by_motion) = self.by_motion(instant, &at);
             let by_others = self.by_others(instant, &at, more);
-            for (row, left) in by_others.iter().zip([left[1], left[0]]) {
-                reduced.add(row, left);
+            for (row, residual) in by_others.iter().zip([residuals[1], residuals[0]]) {
+                reduced.add(row, residual);
             }
             if more.is_empty() {
-                reduced.sum += left[0] * left[0];
+                reduced.sum += residuals[0] * residuals[0];
             }
-            for (row, left) in by_motion.iter().zip(left) {
+            for (row, residual) in by_motion.iter().zip(residuals) {
                 matrix.add(first, row);
                 for (sum, value) in pull[first..].iter_mut().zip(row) {
-                    *sum += value * left;
+                    *sum += value * residual;
                 }
             }
             for (by_motion, by_others) in by_motion.iter().rev().zip(&by_others) {

@@ -68,10 +68,10 @@ impl NormalEquations {
     }
 
     /// Adds an observation: its derivatives and its residual.
-    pub fn add(&mut self, row: &DVector<f64>, left: f64) {
+    pub fn add(&mut self, row: &DVector<f64>, residual: f64) {
         self.information.ger(1.0, row, row, 1.0);
-        self.gradient.axpy(left, row, 1.0);
-        self.sum += left * left;
+        self.gradient.axpy(residual, row, 1.0);
+        self.sum += residual * residual;
     }
 
     /// The minimum near `from` with given penalties; `None` where the data do not determine it.
@@ -111,18 +111,18 @@ impl NormalEquations {
         let mut first = 0;
         for (basis, exponent) in functions.iter().zip(exponents) {
             let count = basis.count();
-            let own = self
+            let trace = self
                 .information
                 .view((first, first), (count, count))
                 .trace();
             let mut block = penalty.view_mut((first, first), (count, count));
             if let Some(roughness) = basis.roughness() {
-                block += &roughness * (10f64.powf(exponent) * own / roughness.trace());
+                block += &roughness * (10f64.powf(exponent) * trace / roughness.trace());
             }
             if let Some(violation) =
                 basis.violation(shaped.rows(first, count).into_owned().as_slice())
             {
-                block += violation * (SHAPE_WEIGHT * own / count as f64);
+                block += violation * (SHAPE_WEIGHT * trace / count as f64);
             }
             first += count;
         }

@@ -45,8 +45,8 @@ impl SplineValues {
     /// The sum of functions with these coefficients at an instant.
     pub fn value(&self, instant: usize, coefficients: &[f64]) -> f64 {
         let (first, values) = &self.rows[instant];
-        let own = coefficients[*first..].iter();
-        own.zip(values).map(|(c, value)| c * value).sum()
+        let local = coefficients[*first..].iter();
+        local.zip(values).map(|(c, value)| c * value).sum()
     }
 }
 
@@ -129,10 +129,10 @@ pub fn smooth(times: &[f64], signal: &[f64], degree: usize) -> Option<SignalSpli
         let spline = BSpline::new(range, intervals, degree, Ends::Uniform);
         if let Ok(coefficients) = nearest(&spline, times, signal) {
             let sampled = SplineValues::new(&spline, times, 0);
-            let left = signal.iter().enumerate();
-            let left = left.map(|(i, y)| (y - sampled.value(i, &coefficients)).powi(2));
+            let squares = signal.iter().enumerate();
+            let squares = squares.map(|(i, y)| (y - sampled.value(i, &coefficients)).powi(2));
             let free = n - spline.count() as f64;
-            let variance = left.sum::<f64>() / free;
+            let variance = squares.sum::<f64>() / free;
             let score = variance * n / free;
             if best.as_ref().is_none_or(|(least, _)| score < *least) {
                 let noise = variance.sqrt();

@@ -24,7 +24,7 @@ const LIMIT: f64 = 4.0;
 const TAKEN: f64 = 0.5;
 
 /// The least share of zᵀz in I: a smaller one is part of K(·), D(·) or the motion.
-const OWN: f64 = 1e-6;
+const LEAST_SHARE: f64 = 1e-6;
 
 /// A possible fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -135,14 +135,14 @@ fn trials(
     joint: &Joint,
     state: &State,
     fit: &Identification,
-    found: &PenalisedFit,
+    penalised: &PenalisedFit,
 ) -> Vec<Suspected> {
     // A form that is wrong looks like a body of another kind.
     let is_free = |function: &Basis| matches!(function.form, Form::Spline(_));
     let are_free = joint.functions.iter().all(is_free);
     let tried = Suspect::ALL.into_iter().filter(|suspect| match suspect {
         Suspect::Mass => joint.recording.mass > 0.0,
-        own => are_free || !own.is_of_body(),
+        other => are_free || !other.is_of_body(),
     });
     let tried: Vec<Suspect> = tried.collect();
     let columns: Vec<Column> = tried
@@ -152,21 +152,21 @@ fn trials(
     let Ok(equations) = joint.linearise_with(state, &columns) else {
         return Vec::new();
     };
-    let (reduced, own) = (&equations.reduced, state.functions.len());
-    let gradient = reduced.gradient.rows(0, own) - &found.penalty * &state.functions;
+    let (reduced, count) = (&equations.reduced, state.functions.len());
+    let gradient = reduced.gradient.rows(0, count) - &penalised.penalty * &state.functions;
     let trial = |(index, suspect): (usize, &Suspect)| {
-        let position = own + index;
+        let position = count + index;
         let mixed: DVector<f64> = reduced
             .information
-            .view((0, position), (own, 1))
+            .view((0, position), (count, 1))
             .column(0)
             .into();
-        let follow = &found.inverse * &mixed;
+        let follow = &penalised.inverse * &mixed;
         let information = reduced.information[(position, position)] - mixed.dot(&follow);
         let square: f64 = columns[index].iter().flatten().map(|z| z * z).sum();
         let score = reduced.gradient[position] - follow.dot(&gradient);
-        let is_own = information > OWN * square;
-        let (amount, error) = if is_own {
+        let is_separate = information > LEAST_SHARE * square;
+        let (amount, error) = if is_separate {
             let error = (fit.misfit.max(1.0) / information).sqrt();
             (score / information, error)
         } else {
@@ -198,16 +198,19 @@ pub fn examine(
     joint: &Joint,
     state: &State,
     fit: &Identification,
-    found: &PenalisedFit,
+    penalised: &PenalisedFit,
 ) -> Vec<Suspected> {
     let excess = (fit.misfit - 1.0).max(0.0) * fit.freedom;
-    let is_sure = |own: &Suspected| {
+    let is_sure = |suspected: &Suspected| {
         // Friction never drives a motion.
-        let is_possible = own.suspect != Suspect::Friction || own.amount > 0.0;
-        let is_significant = own.size() > LIMIT;
-        is_possible && is_significant && own.explained > TAKEN * excess && own.effect > RESOLUTION
+        let is_possible = suspected.suspect != Suspect::Friction || suspected.amount > 0.0;
+        let is_significant = suspected.size() > LIMIT;
+        is_possible
+            && is_significant
+            && suspected.explained > TAKEN * excess
+            && suspected.effect > RESOLUTION
     };
-    let mut sure = trials(joint, state, fit, found);
+    let mut sure = trials(joint, state, fit, penalised);
     sure.retain(is_sure);
     sure.sort_by(|a, b| b.size().total_cmp(&a.size()));
     sure
@@ -217,7 +220,7 @@ pub fn examine(
 pub fn description(suspects: &[Suspected]) -> Option<String> {
     let words = suspects
         .iter()
-        .map(|own| own.suspect.words(own.amount, own.error));
+        .map(|suspected| suspected.suspect.words(suspected.amount, suspected.error));
     let words: Vec<String> = words.collect();
     let remedy = if suspects.first()?.suspect.is_of_body() {
         "smooth functions cannot follow it, and no interval or band includes it"

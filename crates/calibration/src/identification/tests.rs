@@ -210,21 +210,21 @@ fn the_recording_that_comes_along_is_the_one_of_its_seed() {
 #[test]
 fn a_recording_of_two_thirds_of_the_instants_has_the_functions_of_the_whole_one() {
     for seed in 1..7 {
-        let whole = Sample {
+        let complete = Sample {
             seed,
             ..Sample::default()
         };
-        let whole = whole.recording();
+        let complete = complete.recording();
         let mut random = ChaCha8Rng::seed_from_u64(seed);
-        let kept: Vec<usize> = (0..whole.times.len())
+        let kept: Vec<usize> = (0..complete.times.len())
             .filter(|_| random.random_range(0..3) > 0)
             .collect();
         let of = |values: &[f64]| kept.iter().map(|i| values[*i]).collect::<Vec<f64>>();
         let part = Recording {
-            times: of(&whole.times),
-            extension: of(&whole.extension),
-            force: of(&whole.force),
-            ..whole.clone()
+            times: of(&complete.times),
+            extension: of(&complete.extension),
+            force: of(&complete.force),
+            ..complete.clone()
         };
         let actual = identify(&part, IdentificationSettings::default(), &|_| ()).unwrap();
         assert!(actual.misfit < 1.2, "{seed}: {}", actual.misfit);

@@ -33,12 +33,12 @@ fn is_steady(motion: &FittedMotion) -> bool {
     let [mut within, mut all] = [0.0; 2];
     for forward in [true, false] {
         let pairs = motion.extension.iter().zip(&motion.rate);
-        let one_way = pairs.filter(|(_, rate)| (**rate > 0.0) == forward);
-        let mut one_way: Vec<[f64; 2]> = one_way.map(|(x, v)| [*x, *v]).collect();
-        one_way.sort_by(|a, b| a[0].total_cmp(&b[0]));
-        let groups = one_way.chunks(one_way.len().div_ceil(GROUPS).max(1));
+        let one_direction = pairs.filter(|(_, rate)| (**rate > 0.0) == forward);
+        let mut one_direction: Vec<[f64; 2]> = one_direction.map(|(x, v)| [*x, *v]).collect();
+        one_direction.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        let groups = one_direction.chunks(one_direction.len().div_ceil(GROUPS).max(1));
         within += groups.map(scatter).sum::<f64>();
-        all += scatter(&one_way);
+        all += scatter(&one_direction);
     }
     within < SHARE * all
 }

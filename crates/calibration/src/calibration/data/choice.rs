@@ -101,8 +101,8 @@ impl<'a> Choice<'a> {
         }
         for column in 0..self.roles.len() {
             let named = self.named(Kind::Size, column);
-            if let Some(own) = named.filter(|own| has_numbers(self.head, own)) {
-                self.roles[column] = own.role;
+            if let Some(candidate) = named.filter(|candidate| has_numbers(self.head, candidate)) {
+                self.roles[column] = candidate.role;
             }
         }
     }
@@ -116,14 +116,19 @@ impl<'a> Choice<'a> {
         let mut named: Vec<Named> = columns
             .filter_map(|column| self.named(kind, column))
             .collect();
-        if named.iter().any(|own| has_numbers(self.head, own)) {
-            named.retain(|own| has_numbers(self.head, own));
+        if named
+            .iter()
+            .any(|candidate| has_numbers(self.head, candidate))
+        {
+            named.retain(|candidate| has_numbers(self.head, candidate));
         }
         let name = kind.name();
         if self.is_one(kind, &named) {
             return self.of_candidates(name, &named);
         }
-        let (second, first): (Vec<_>, _) = named.into_iter().partition(|own| own.role.axis() == 1);
+        let (second, first): (Vec<_>, _) = named
+            .into_iter()
+            .partition(|candidate| candidate.role.axis() == 1);
         match (self.test, second.is_empty()) {
             (Some(Test::Biaxial), _) | (_, false) => {
                 self.of_candidates(&format!("{name}_1"), &first)
@@ -135,10 +140,12 @@ impl<'a> Choice<'a> {
 
     /// A column that is not chosen yet, where its name is one of a kind.
     fn named(&self, kind: Kind, column: usize) -> Option<Named> {
-        let own = &self.head.table.columns[column];
-        let (mut role, naming) = Role::of(own);
+        let table_column = &self.head.table.columns[column];
+        let (mut role, naming) = Role::of(table_column);
         let is_free = self.roles[column].kind == Kind::Other && role.kind == kind;
-        role.measure = role.measure.or_else(|| of_unit(self.head, own, kind));
+        role.measure = role
+            .measure
+            .or_else(|| of_unit(self.head, table_column, kind));
         is_free.then_some(Named {
             column,
             role,
@@ -149,7 +156,9 @@ impl<'a> Choice<'a> {
     /// Whether all columns of a kind stand for one quantity: a test of one axis has one stress, and only columns that are all numbered, or
     /// those of a biaxial test, are of two axes.
     fn is_one(&self, kind: Kind, named: &[Named]) -> bool {
-        let numbered = named.iter().filter(|own| own.role.numbered.is_some());
+        let numbered = named
+            .iter()
+            .filter(|candidate| candidate.role.numbered.is_some());
         let is_mixed = numbered.count() < named.len();
         match self.test {
             _ if kind == Kind::Time => true,
@@ -167,12 +176,20 @@ impl<'a> Choice<'a> {
         };
         // What needs a dimension that is not stated gives way to what can be read.
         let mut possible = candidates.to_vec();
-        if candidates.iter().any(|own| readings.are_possible(own)) {
-            possible.retain(|own| readings.are_possible(own));
+        if candidates
+            .iter()
+            .any(|candidate| readings.are_possible(candidate))
+        {
+            possible.retain(|candidate| readings.are_possible(candidate));
         }
-        let Some(first) = possible.iter().min_by_key(|own| {
-            let is_measured = readings.is_measured(own);
-            (!is_measured, own.naming, own.role.numbered, own.column)
+        let Some(first) = possible.iter().min_by_key(|candidate| {
+            let is_measured = readings.is_measured(candidate);
+            (
+                !is_measured,
+                candidate.naming,
+                candidate.role.numbered,
+                candidate.column,
+            )
         }) else {
             return;
         };
@@ -181,12 +198,14 @@ impl<'a> Choice<'a> {
             head: self.head,
             roles: &self.roles,
         };
-        let mut others = possible.iter().filter(|own| own.column != first.column);
+        let mut others = possible
+            .iter()
+            .filter(|candidate| candidate.column != first.column);
         if others.all(|other| readings.agree(first, other)) {
             return;
         }
         let each = possible.iter();
-        let options = each.map(|own| self.option(&[(quantity, own.column)]));
+        let options = each.map(|candidate| self.option(&[(quantity, candidate.column)]));
         let message = format!(
             "{}: {} columns may be the {}, and they do not agree",
             self.head.table.source.name,
@@ -203,11 +222,11 @@ impl<'a> Choice<'a> {
     /// Finds the columns of a table without names: their order is known where one alone is possible.
     fn order(&mut self) {
         let count = self.roles.len();
-        let free = |kind: Kind, own: &Self| -> Vec<usize> {
-            match of_kind(&own.roles, kind).next() {
+        let free = |kind: Kind, choice: &Self| -> Vec<usize> {
+            match of_kind(&choice.roles, kind).next() {
                 Some((column, _)) => vec![column],
                 None => (0..count)
-                    .filter(|column| own.roles[*column].kind == Kind::Other)
+                    .filter(|column| choice.roles[*column].kind == Kind::Other)
                     .collect(),
             }
         };
@@ -288,8 +307,8 @@ impl<'a> Choice<'a> {
 }
 
 /// Whether a column has numbers at all.
-fn has_numbers(head: &Head, own: &Named) -> bool {
-    let mut values = values(head, (own.column, 1.0)).into_iter();
+fn has_numbers(head: &Head, candidate: &Named) -> bool {
+    let mut values = values(head, (candidate.column, 1.0)).into_iter();
     values.any(f64::is_finite)
 }
 

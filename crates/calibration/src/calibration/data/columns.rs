@@ -87,8 +87,8 @@ pub fn strains(
     } else {
         head.choice("strain measure", first.1.measure, &StrainColumn::NAMES)?
     };
-    let scaled = |own: (usize, &Role)| -> Faulty<Scaled> {
-        Ok((own.0, strain_factor(head, roles, own, measure)?))
+    let scaled = |column: (usize, &Role)| -> Faulty<Scaled> {
+        Ok((column.0, strain_factor(head, roles, column, measure)?))
     };
     let along = scaled(first)?;
     let across = of_kind(roles, Kind::Strain).find(|(_, role)| role.axis() == 1);
@@ -122,11 +122,11 @@ pub fn stresses(
         }
     };
     let mut columns = Vec::new();
-    for own in of_kind(roles, Kind::Stress) {
+    for column in of_kind(roles, Kind::Stress) {
         columns.push(StressColumn {
-            column: own.0,
-            factor: stress_factor(head, roles, own)?,
-            axis: own.1.axis().max(direction),
+            column: column.0,
+            factor: stress_factor(head, roles, column)?,
+            axis: column.1.axis().max(direction),
             is_second,
         });
     }
@@ -150,8 +150,9 @@ pub fn length(head: &Head, roles: &[Role], axis: usize) -> Faulty<f64> {
 /// The size of the specimen along an axis before its first displacement in mm, where columns state both.
 fn size_at_rest(head: &Head, roles: &[Role], axis: usize) -> Option<f64> {
     let first = |kind: Kind, measure: Option<&str>| {
-        let mut own = of_kind(roles, kind);
-        let (column, _) = own.find(|(_, role)| role.axis() == axis && role.measure == measure)?;
+        let mut columns = of_kind(roles, kind);
+        let (column, _) =
+            columns.find(|(_, role)| role.axis() == axis && role.measure == measure)?;
         let column_head = &head.table.columns[column];
         let factor = units::factor(column_head.unit.as_deref()?, Dimension::Length).ok()?;
         Some(factor * head.table.rows.first()?.0[column])
@@ -199,11 +200,11 @@ pub fn area(head: &Head, roles: &[Role], axis: Option<usize>) -> Faulty<f64> {
 /// The specimen of a table with one column of displacements and one of forces.
 pub fn machine(head: &Head, roles: &[Role]) -> Faulty<Option<Machine>> {
     let only = |kind, measure| {
-        let mut own = of_kind(roles, kind);
-        let first = own
+        let mut columns = of_kind(roles, kind);
+        let first = columns
             .next()
             .is_some_and(|(_, role)| role.measure == Some(measure));
-        first && own.next().is_none()
+        first && columns.next().is_none()
     };
     if !only(Kind::Strain, DISPLACEMENT) || !only(Kind::Stress, FORCE) {
         return Ok(None);
@@ -253,11 +254,11 @@ pub fn strain_ratio(head: &Head) -> Faulty<f64> {
 /// The unit of a column, or the one that is stated for its kind where the column has none that is known.
 pub fn unit(head: &Head, column: &Column, kind: Kind) -> Option<String> {
     let printed = || head.setting(&format!("{} unit", kind.name()), None);
-    let own = column.unit.clone();
+    let unit = column.unit.clone();
     let is_known =
-        |own: &&String| units::is_known(own) || units::factor(own, Dimension::Ratio).is_ok();
-    let known = own.as_ref().filter(is_known).cloned();
-    known.or_else(|| printed().ok().flatten()).or(own)
+        |unit: &&String| units::is_known(unit) || units::factor(unit, Dimension::Ratio).is_ok();
+    let known = unit.as_ref().filter(is_known).cloned();
+    known.or_else(|| printed().ok().flatten()).or(unit)
 }
 
 /// A dimension of the specimen without the rounding of its arithmetic.

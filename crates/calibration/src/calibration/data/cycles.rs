@@ -113,8 +113,8 @@ impl Branches {
         }
         let at = |end: f64| {
             let rows = strains.iter().zip(stresses);
-            let own = rows.filter(|(x, _)| (*x - end).abs() <= near);
-            median(own.map(|(_, stress)| stress.abs()))
+            let at_end = rows.filter(|(x, _)| (*x - end).abs() <= near);
+            median(at_end.map(|(_, stress)| stress.abs()))
         };
         Self::along(strains, if at(low) <= at(high) { 1.0 } else { -1.0 })
     }

@@ -20,7 +20,7 @@ pub fn gross_rows(strains: &[f64], stresses: &[f64]) -> Vec<usize> {
     }
     let bends = stresses
         .windows(3)
-        .map(|own| (own[0] - 2.0 * own[1] + own[2]).abs());
+        .map(|triple| (triple[0] - 2.0 * triple[1] + triple[2]).abs());
     let usual = USUAL * median(bends);
     let mut sorted = stresses.to_vec();
     sorted.sort_by(f64::total_cmp);
@@ -30,17 +30,17 @@ pub fn gross_rows(strains: &[f64], stresses: &[f64]) -> Vec<usize> {
     let goes_on =
         |row: usize| (strains[row] - strains[row - 1]) * (strains[row + 1] - strains[row]) >= 0.0;
     let is_spike = |row: &usize| {
-        let [before, own, after] = [row - 1, *row, row + 1].map(|row| stresses[row]);
-        let height = (own - before).abs().min((own - after).abs());
-        let returns = (own - before) * (own - after) > 0.0;
+        let [before, middle, after] = [row - 1, *row, row + 1].map(|row| stresses[row]);
+        let height = (middle - before).abs().min((middle - after).abs());
+        let returns = (middle - before) * (middle - after) > 0.0;
         let step = (after - before).abs();
         returns && goes_on(*row) && height > usual.max(SHARE * range).max(USUAL * step)
     };
     let mut gross: Vec<usize> = (1..count - 1).filter(is_spike).collect();
-    let is_off = |own: usize, next: [usize; 4]| {
+    let is_off = |end: usize, next: [usize; 4]| {
         let [low, high] = extremes(next.map(|row| stresses[row]));
-        let jump = (stresses[own] - stresses[next[0]]).abs();
-        let direction = (strains[own] - strains[next[0]]).abs();
+        let jump = (stresses[end] - stresses[next[0]]).abs();
+        let direction = (strains[end] - strains[next[0]]).abs();
         let [shortest, longest] = extremes(next.map(|row| strains[row]));
         let off = jump > (SHARE_AT_ENDS * range).max(USUAL * (high - low)).max(usual);
         off && direction <= longest - shortest

@@ -79,10 +79,11 @@ impl Layout {
         };
         faults.of(check_columns(head, &roles, test));
         let [turn_strain, turn_stress] = faults.of(flip(head, strain)).unwrap_or([1.0; 2]);
-        let strains = strains.map(|own| own.map(|(column, factor)| (column, turn_strain * factor)));
-        let turned = |own: StressColumn| StressColumn {
-            factor: turn_stress * own.factor,
-            ..own
+        let strains =
+            strains.map(|scaled| scaled.map(|(column, factor)| (column, turn_strain * factor)));
+        let turned = |column: StressColumn| StressColumn {
+            factor: turn_stress * column.factor,
+            ..column
         };
         let stresses = stresses.into_iter().map(turned).collect();
         let ratio = (test == Test::Biaxial && strains[1].is_none()).then(|| strain_ratio(head));
@@ -116,12 +117,12 @@ impl Layout {
     /// The columns that are read.
     pub fn columns(&self) -> impl Iterator<Item = usize> {
         let strains = self.strains.iter().flatten().map(|(column, _)| *column);
-        strains.chain(self.stresses.iter().map(|own| own.column))
+        strains.chain(self.stresses.iter().map(|stress| stress.column))
     }
 
     /// λ − 1 along the first axis in a row, without any zero found in the record.
     pub fn strain_as_written(&self, row: &[f64]) -> f64 {
-        self.strains_of(row, &Part::whole(0))[0]
+        self.strains_of(row, &Part::all_rows(0))[0]
     }
 
     /// Those of some rows at which the stress of an axis leaves the curve of its neighbours.
@@ -134,19 +135,19 @@ impl Layout {
         self.unlike(table, rows, torn_rows)
     }
 
-    /// Those of some rows that are `found` by strains and stresses of any axis.
+    /// Those of some rows that are `chosen` by strains and stresses of any axis.
     fn unlike(
         &self,
         table: &Table,
         rows: &[usize],
-        found: fn(&[f64], &[f64]) -> Vec<usize>,
+        chosen: fn(&[f64], &[f64]) -> Vec<usize>,
     ) -> Vec<usize> {
         let row = |row: &usize| &table.rows[*row].0;
-        let strains = rows.iter().map(|own| self.strain_as_written(row(own)));
+        let strains = rows.iter().map(|index| self.strain_as_written(row(index)));
         let strains: Vec<f64> = strains.collect();
-        let of_axis = |own: &StressColumn| {
-            let stresses: Vec<f64> = rows.iter().map(|at| row(at)[own.column]).collect();
-            found(&strains, &stresses)
+        let of_axis = |stress: &StressColumn| {
+            let stresses: Vec<f64> = rows.iter().map(|at| row(at)[stress.column]).collect();
+            chosen(&strains, &stresses)
         };
         let mut all: Vec<usize> = self.stresses.iter().flat_map(of_axis).collect();
         all.sort_unstable();
@@ -203,7 +204,7 @@ impl Layout {
             name: table.source.name.clone(),
             test: self.test,
             stress_measure: self.stress_measure,
-            axes: self.stresses.iter().map(|own| own.axis).collect(),
+            axes: self.stresses.iter().map(|stress| stress.axis).collect(),
             drawn_axis: Observation::drawn_axis(widest),
             loaded: Loaded::of(observations.iter().flat_map(|one| one.strains)),
             observations,
@@ -231,17 +232,17 @@ impl Layout {
         strains: [f64; 2],
         part: &'a Part,
     ) -> impl Iterator<Item = Observation> + 'a {
-        self.stresses.iter().map(move |own| {
-            let strains = self.along(own.axis, strains);
-            let stress = part.stress(row[own.column] * own.factor);
-            let stretch = if own.is_second {
-                1.0 + strains[own.axis]
+        self.stresses.iter().map(move |column| {
+            let strains = self.along(column.axis, strains);
+            let stress = part.stress(row[column.column] * column.factor);
+            let stretch = if column.is_second {
+                1.0 + strains[column.axis]
             } else {
                 1.0
             };
             Observation {
                 strains,
-                axis: own.axis,
+                axis: column.axis,
                 stress: stretch * stress,
             }
         })
@@ -250,7 +251,7 @@ impl Layout {
     /// The part of the table that is fitted.
     fn part(&self, head: &Head) -> Faulty<Part> {
         let rows = &head.table.rows;
-        let plain = Part::whole(rows.len());
+        let plain = Part::all_rows(rows.len());
         let strains = rows.iter().map(|(row, _)| self.strains_of(row, &plain)[0]);
         let first = self.stresses[0];
         let stresses = rows.iter().map(|(row, _)| row[first.column] * first.factor);
@@ -278,11 +279,11 @@ impl Layout {
 
     /// The rounding of strains and stresses; zero for strains that were commanded.
     fn rounding(&self, table: &Table, rows: &[usize]) -> [f64; 2] {
-        let own = |column: usize| WrittenColumn::of(table, column, rows);
-        let measured = own(self.stresses[0].column);
+        let written = |column: usize| WrittenColumn::of(table, column, rows);
+        let measured = written(self.stresses[0].column);
         let of_strain = |(column, factor): &Scaled| {
             let read = |value: f64| self.strain.to_nominal(value * factor);
-            let strains = own(*column);
+            let strains = written(*column);
             if strains.is_commanded(&measured) {
                 0.0
             } else {
@@ -290,7 +291,8 @@ impl Layout {
             }
         };
         let stresses = self.stresses.iter();
-        let stresses = stresses.map(|stress| own(stress.column).rounding(&|y| y * stress.factor));
+        let stresses =
+            stresses.map(|stress| written(stress.column).rounding(&|y| y * stress.factor));
         let strains = self.strains.iter().flatten().map(of_strain);
         [strains.fold(0.0, f64::max), stresses.fold(0.0, f64::max)]
     }
@@ -339,9 +341,9 @@ struct Faults(Vec<Diagnostic>);
 
 impl Faults {
     /// The value that was found, or `None` after recording a fault.
-    fn of<T>(&mut self, found: Faulty<T>) -> Option<T> {
-        let fault = match found {
-            Ok(found) => return Some(found),
+    fn of<T>(&mut self, outcome: Faulty<T>) -> Option<T> {
+        let fault = match outcome {
+            Ok(value) => return Some(value),
             Err(fault) => *fault,
         };
         if self.0.iter().all(|known| known.message != fault.message) {

@@ -32,7 +32,7 @@ impl Readings<'_> {
     pub fn agree(&self, first: &Named, other: &Named) -> bool {
         /// Differences below this share of the largest value are rounding.
         const ROUNDING: f64 = 5e-3;
-        let readings = [first, other].map(|own| self.readings(own));
+        let readings = [first, other].map(|candidate| self.readings(candidate));
         let is_same = |a: &Vec<f64>, b: &Vec<f64>| {
             let pairs = || a.iter().zip(b).filter(|(a, b)| (*a - *b).is_finite());
             let far = pairs().map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
@@ -47,63 +47,65 @@ impl Readings<'_> {
     }
 
     /// Whether a column can be read: its unit and the dimensions of the specimen that it needs are stated.
-    pub fn are_possible(&self, own: &Named) -> bool {
-        !self.readings(own).is_empty()
+    pub fn are_possible(&self, candidate: &Named) -> bool {
+        !self.readings(candidate).is_empty()
     }
 
     /// Whether the measure of a column is known: by its name, its unit, or a statement.
-    pub fn is_measured(&self, own: &Named) -> bool {
-        let key = format!("{} measure", own.role.kind.name());
-        own.role.measure.is_some() || matches!(self.head.setting(&key, None), Ok(Some(_)))
+    pub fn is_measured(&self, candidate: &Named) -> bool {
+        let key = format!("{} measure", candidate.role.kind.name());
+        candidate.role.measure.is_some() || matches!(self.head.setting(&key, None), Ok(Some(_)))
     }
 
     /// The values of a column in each of the measures that it may have: λ − 1, nominal stresses in MPa, or times in s from the first one on;
     /// none where units or the dimensions of the specimen are not stated.
-    fn readings(&self, own: &Named) -> Vec<Vec<f64>> {
-        match own.role.kind {
-            Kind::Strain => self.strains((own.column, &own.role)),
-            Kind::Stress => self.stresses(own),
+    fn readings(&self, candidate: &Named) -> Vec<Vec<f64>> {
+        match candidate.role.kind {
+            Kind::Strain => self.strains((candidate.column, &candidate.role)),
+            Kind::Stress => self.stresses(candidate),
             Kind::Time | Kind::Size | Kind::Other => {
-                let column = &self.head.table.columns[own.column];
+                let column = &self.head.table.columns[candidate.column];
                 let Ok(factor) = self.head.factor("time unit", column, Dimension::Time) else {
                     return Vec::new();
                 };
-                let times = values(self.head, (own.column, factor));
+                let times = values(self.head, (candidate.column, factor));
                 let first = times.first().copied().unwrap_or(0.0);
                 vec![times.iter().map(|time| time - first).collect()]
             }
         }
     }
 
-    fn strains(&self, own: (usize, &Role)) -> Vec<Vec<f64>> {
-        let measure = own.1.measure;
+    fn strains(&self, column: (usize, &Role)) -> Vec<Vec<f64>> {
+        let measure = column.1.measure;
         let known = StrainColumn::NAMES.iter().filter(|(name, as_read)| {
             if measure == Some(DISPLACEMENT) {
                 *as_read == StrainColumn::Strain(StrainMeasure::Nominal)
             } else {
-                measure.map_or(*as_read != StrainColumn::Stretch, |own| own == *name)
+                measure.map_or(*as_read != StrainColumn::Stretch, |stated| stated == *name)
             }
         });
         let read = |(_, measure): &(&str, StrainColumn)| {
-            let factor = strain_factor(self.head, self.roles, own, *measure).ok()?;
-            let values = values(self.head, (own.0, factor)).into_iter();
+            let factor = strain_factor(self.head, self.roles, column, *measure).ok()?;
+            let values = values(self.head, (column.0, factor)).into_iter();
             Some(values.map(|value| measure.to_nominal(value)).collect())
         };
         known.filter_map(read).collect()
     }
 
-    fn stresses(&self, own: &Named) -> Vec<Vec<f64>> {
-        let Ok(factor) = stress_factor(self.head, self.roles, (own.column, &own.role)) else {
+    fn stresses(&self, candidate: &Named) -> Vec<Vec<f64>> {
+        let Ok(factor) = stress_factor(self.head, self.roles, (candidate.column, &candidate.role))
+        else {
             return Vec::new();
         };
-        let values = values(self.head, (own.column, factor));
-        let measure = own.role.measure;
+        let values = values(self.head, (candidate.column, factor));
+        let measure = candidate.role.measure;
         if measure == Some(FORCE) || measure == Some("nominal") {
             return vec![values];
         }
-        let axis = own.role.axis();
+        let axis = candidate.role.axis();
         let strains = of_kind(self.roles, Kind::Strain).find(|(_, role)| role.axis() == axis);
-        let Some(strains) = strains.and_then(|own| self.strains(own).into_iter().next()) else {
+        let Some(strains) = strains.and_then(|column| self.strains(column).into_iter().next())
+        else {
             return vec![values];
         };
         let times = |power: i32| -> Vec<f64> {

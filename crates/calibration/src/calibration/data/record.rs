@@ -50,7 +50,7 @@ enum Zero {
 
 impl Part {
     /// All rows as they are.
-    pub fn whole(rows: usize) -> Self {
+    pub fn all_rows(rows: usize) -> Self {
         Self {
             rows: 0..rows,
             signs: [1.0; 2],
@@ -77,7 +77,7 @@ impl Part {
     ) -> Faulty<Self> {
         let stated = Cycle::stated(head)?;
         let zero = Zero::stated(head, machine)?;
-        let mut part = Self::whole(strains.len());
+        let mut part = Self::all_rows(strains.len());
         let machine = match (machine, stated) {
             (None, None | Some(Cycle::All)) => return Ok(part),
             (machine, _) => machine,
@@ -129,7 +129,7 @@ impl Part {
         };
         let ends: Vec<_> = ends.map(end).collect();
         let more = if count > 5 { ", …" } else { "" };
-        let found = format!("{} found (to {}{more})", cycles(count), ends.join(", "));
+        let counted = format!("{} found (to {}{more})", cycles(count), ends.join(", "));
         let line = |row: usize| {
             let position = &head.table.rows[row.min(head.table.rows.len() - 1)].1;
             head.table.source.line(position.start)
@@ -149,7 +149,7 @@ impl Part {
             ),
         };
         let others = "`--cycle first`, `last`, `all` or a number takes another part";
-        self.remarks.push(format!("{found}; {taken} ({others})"));
+        self.remarks.push(format!("{counted}; {taken} ({others})"));
         Ok(())
     }
 
@@ -167,9 +167,9 @@ impl Part {
             Zero::AsWritten => {}
             Zero::Automatic => self.set_right(machine, Beginning::of(x, y), y),
             Zero::Displacement(u) => {
-                let found = FoundZero::Stress { area: machine.area };
+                let uncertain = FoundZero::Stress { area: machine.area };
                 let position = either(x, u / machine.length);
-                self.take_stated(head, machine, [x, y], position, found)?;
+                self.take_stated(head, machine, [x, y], position, uncertain)?;
             }
             Zero::Force(f) => {
                 let length = machine.length;
@@ -196,14 +196,14 @@ impl Part {
     }
 
     /// Takes the zero at a stated place of a branch, as a row and the part of the step behind it; a single row's
-    /// reading scatters, so that the `found` one is determined again with the law.
+    /// reading scatters, so that the `uncertain` one is determined again with the law.
     fn take_stated(
         &mut self,
         head: &Head,
         machine: Machine,
         [x, y]: [&[f64]; 2],
         position: Option<(usize, f64)>,
-        found: FoundZero,
+        uncertain: FoundZero,
     ) -> Faulty<()> {
         let Some(position) = position else {
             let message = "the loading branch does not pass the stated zero";
@@ -211,7 +211,7 @@ impl Part {
             return Err(head.fault(head.position(ZERO), message, hint));
         };
         (self.zero, self.offset) = (at(x, position), at(y, position));
-        self.found_zero = Some(found);
+        self.found_zero = Some(uncertain);
         self.remarks.push(format!(
             "the zero of displacement is {:.4} mm as stated, and the force there, {:.4} N, is subtracted",
             machine.length * self.zero,
@@ -286,8 +286,8 @@ impl Machine {
             return;
         }
         let rises = |values: &[f64]| {
-            let own = &values[loading.clone()];
-            own[own.len() - 1] > own[0]
+            let branch = &values[loading.clone()];
+            branch[branch.len() - 1] > branch[0]
         };
         for (sign, values) in part.signs.iter_mut().zip([x, y]) {
             *sign = if rises(values) { -1.0 } else { 1.0 };

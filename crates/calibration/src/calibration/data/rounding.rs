@@ -53,7 +53,7 @@ impl WrittenColumn {
         let again: Vec<&[usize]> = rows
             .chunk_by(|a, b| positions[*a] == positions[*b])
             .collect();
-        let [rises, falls] = measured.ways(&again);
+        let [rises, falls] = measured.rises_and_falls(&again);
         match (rises, falls) {
             (true, true) => true,
             (false, false) => is_regular(again.iter().map(|rows| positions[rows[0]] as i64)),
@@ -62,7 +62,7 @@ impl WrittenColumn {
     }
 
     /// Whether values of equal strains rise, and whether they fall, by more than their last digit.
-    fn ways(&self, again: &[&[usize]]) -> [bool; 2] {
+    fn rises_and_falls(&self, again: &[&[usize]]) -> [bool; 2] {
         let pairs = || again.iter().flat_map(|rows| rows.windows(2));
         let change = |pair: &[usize]| {
             let [a, b] = [pair[0], pair[1]];

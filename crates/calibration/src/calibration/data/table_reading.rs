@@ -27,13 +27,13 @@ pub struct ColumnReading {
 impl TableReading {
     /// What was read, in a sentence.
     pub fn sentence(&self) -> String {
-        let columns = self.columns.iter().map(|own| {
+        let columns = self.columns.iter().map(|reading| {
             let ColumnReading {
                 quantity,
                 column,
                 unit,
                 divided_by,
-            } = own;
+            } = reading;
             if divided_by.is_empty() {
                 format!("{quantity} from {column} [{unit}]")
             } else {

@@ -77,15 +77,15 @@ impl Interpolation {
     }
 
     fn of(knots: Vec<[f64; 2]>, scales: [f64; 2]) -> Self {
-        let mut own = Self {
+        let mut interpolation = Self {
             knots,
             scales,
             inverse: DMatrix::zeros(0, 0),
         };
-        let size = own.knots.len() + 3;
+        let size = interpolation.knots.len() + 3;
         let mut matrix = DMatrix::zeros(size, size);
-        for (row, knot) in own.knots.iter().enumerate() {
-            for (column, value) in own.basis(*knot).0.into_iter().enumerate() {
+        for (row, knot) in interpolation.knots.iter().enumerate() {
+            for (column, value) in interpolation.basis(*knot).0.into_iter().enumerate() {
                 matrix[(row, column)] = value;
                 if column + 3 >= size {
                     matrix[(column, row)] = value;
@@ -93,10 +93,10 @@ impl Interpolation {
             }
         }
         // Knots on a line do not determine the plane: the flattest one is taken.
-        own.inverse = matrix
+        interpolation.inverse = matrix
             .pseudo_inverse(1e-10)
             .expect("a tolerance above zero");
-        own
+        interpolation
     }
 
     /// The strains at which values are given.

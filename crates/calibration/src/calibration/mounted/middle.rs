@@ -125,13 +125,13 @@ impl Middle {
     /// The same with the states of its law by other finite elements.
     #[must_use]
     pub fn with_states(&self, law: &[SheetLaw], solved: &[Vec<SheetState>]) -> Self {
-        let own = Self::new(&self.of_bars, law, &[], solved, (self.read, self.largest));
+        let middle = Self::new(&self.of_bars, law, &[], solved, (self.read, self.largest));
         Self {
             of_middle: self.of_middle.clone(),
             slopes: self.slopes.clone(),
             factors_of_middle: self.factors_of_middle.clone(),
             forces: self.forces.clone(),
-            ..own
+            ..middle
         }
     }
 
@@ -163,8 +163,8 @@ impl Middle {
         let stress = self.law.stresses(one.strains)[axis];
         let size = (stress.abs() + self.small) / self.law.stretches[axis];
         let slope = |slopes: &Option<[Vec<f64>; 2]>| {
-            let own = slopes.as_ref();
-            own.map_or(0.0, |own| size * basis.value(&own[axis]))
+            let slopes = slopes.as_ref();
+            slopes.map_or(0.0, |slopes| size * basis.value(&slopes[axis]))
         };
         let factor = basis.value(&self.factors_of_middle[axis]);
         let measured = 1.0 + factor * stress.signum();

@@ -59,7 +59,7 @@ impl MountedSheet {
                 let known = solved.iter().map(|(_, states)| &states[0]);
                 let nearest = known.min_by(|a, b| far(a).total_cmp(&far(b)));
                 let starts = [starts.get(*number), nearest, None];
-                let states = search.first(target, &starts.map(|own| own.cloned()));
+                let states = search.first(target, &starts.map(|start| start.cloned()));
                 let states = states.map_err(|fault| fault_at(target, fault))?;
                 solved.push((*number, states));
             }

@@ -109,7 +109,7 @@ impl Solved {
             ..settings.clone()
         };
         let mut tests = self.of_middle(&isotropic.middle);
-        tests.extend(self.beyond(isotropic, &tests));
+        tests.extend(self.around_tines(isotropic, &tests));
         let fit = nearest(law, &tests, &relative)?;
         let mut values = fit.values();
         let square = isotropic.middle.square(&self.tests);
@@ -128,7 +128,7 @@ impl Solved {
     }
 
     /// Tests of a law at some strains around the tines for each protocol of some tests.
-    fn beyond(&self, isotropic: &Reached, tests: &[TestData]) -> Vec<TestData> {
+    fn around_tines(&self, isotropic: &Reached, tests: &[TestData]) -> Vec<TestData> {
         /// Strains around the tines over the largest ones of the middle.
         const MULTIPLES: [f64; 4] = [1.5, 2.0, 2.5, 3.0];
         let (at, _) = self.sheet_law(isotropic.law, &isotropic.values);
@@ -346,22 +346,22 @@ impl Solved {
     /// ones, and by how much the forces change, as a share of the largest. Errors of quadratic elements around tines fall to a seventh with
     /// each halving (measured: a fifth to an eighth).
     pub fn extrapolated(&mut self, reached: &Reached) -> Result<(Middle, f64), Error> {
-        const FALL: f64 = 7.0;
+        const RATIO: f64 = 7.0;
         let fine = self.sheet.halved();
         let law = [self.sheet_law(reached.law, &reached.values).0];
         let knots = self.interpolation.knots();
         let coarse = self.sheet.states(&law, knots, &self.states)?.concat();
         let states = fine.states(&law, knots, &self.sheet.on(&fine, &coarse))?;
         let mut states = states.concat();
-        let beyond = |fine: f64, coarse: f64| (fine - coarse) * FALL / (FALL - 1.0);
+        let correction = |fine: f64, coarse: f64| (fine - coarse) * RATIO / (RATIO - 1.0);
         let mut most = 0.0_f64;
         for (fine, coarse) in states.iter_mut().zip(&coarse) {
             for axis in [0, 1] {
-                let change = beyond(fine.stresses[axis], coarse.stresses[axis]);
+                let change = correction(fine.stresses[axis], coarse.stresses[axis]);
                 most = most.max(change.abs());
                 fine.stresses[axis] = coarse.stresses[axis] + change;
                 fine.middle[axis] =
-                    coarse.middle[axis] + beyond(fine.middle[axis], coarse.middle[axis]);
+                    coarse.middle[axis] + correction(fine.middle[axis], coarse.middle[axis]);
             }
         }
         let states: Vec<Vec<SheetState>> = states.into_iter().map(|state| vec![state]).collect();

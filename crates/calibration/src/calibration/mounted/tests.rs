@@ -56,7 +56,10 @@ fn recorded(
         stretches: prestretch,
     };
     let states = sheet.states(&[law], &strains, &[]).unwrap();
-    let states: Vec<SheetState> = states.into_iter().map(|mut own| own.remove(0)).collect();
+    let states: Vec<SheetState> = states
+        .into_iter()
+        .map(|mut of_law| of_law.remove(0))
+        .collect();
     let largest = states
         .iter()
         .map(|state| state.stresses[0])
@@ -86,7 +89,7 @@ fn error_percent(fit: &Fit, law: &dyn HyperelasticLaw, strain: f64) -> f64 {
 }
 
 /// A fit to the record of a law, whose stresses are right to so many per cent, and most of whose intervals hold the right values.
-fn found_again(name: &str, right: &[f64], tests: &[TestData], percent: f64) -> Fit {
+fn accurate_fit(name: &str, right: &[f64], tests: &[TestData], percent: f64) -> Fit {
     let known = Law::named(name).unwrap();
     let law = known.with_values(right, StressMeasure::Nominal, MEASURE).0;
     let actual = fit(known, tests, &FitSettings::default()).unwrap();
@@ -103,7 +106,7 @@ fn found_again(name: &str, right: &[f64], tests: &[TestData], percent: f64) -> F
 fn a_law_is_found_again_from_forces_on_rakes() {
     let law: Arc<dyn HyperelasticLaw> = Arc::new(FungDemiray { mu: 0.02, b: 4.0 });
     let tests = [record(RAKES, &law, [1.0; 2], (0.12, 0.003))];
-    let actual = found_again("fung-demiray", &[0.02, 4.0], &tests, 0.5);
+    let actual = accurate_fit("fung-demiray", &[0.02, 4.0], &tests, 0.5);
     let mounted = actual.mounted.as_ref().unwrap();
     assert!(
         mounted.bias_percent[0].abs() > 10.0,
@@ -129,7 +132,7 @@ fn mountings_that_slide_and_markers_give_the_same_law() {
             [1.0; 2],
             (0.1, 0.003),
         )];
-        found_again("fung-demiray", &[0.02, 4.0], &tests, 1.0);
+        accurate_fit("fung-demiray", &[0.02, 4.0], &tests, 1.0);
     }
 }
 
@@ -138,7 +141,7 @@ fn a_cruciform_gives_the_law_of_its_middle() {
     let head = "# mounting: cruciform\n# length: 30 mm\n# width: 30 mm\n# arm width: 10 mm\n# fillet: 3 mm\n# thickness: 1 mm\n";
     let law: Arc<dyn HyperelasticLaw> = Arc::new(FungDemiray { mu: 0.02, b: 4.0 });
     let tests = [record(head, &law, [1.0; 2], (0.2, 0.003))];
-    found_again("fung-demiray", &[0.02, 4.0], &tests, 1.0);
+    accurate_fit("fung-demiray", &[0.02, 4.0], &tests, 1.0);
 }
 
 /// As mounted the sheet is stretched by 4 and 2 %: taken as at rest, its law is another one; estimated or stated it is the right one.
@@ -149,7 +152,7 @@ fn the_stretch_as_mounted_is_found_with_the_law() {
     let text = recorded(&head, &law, [1.04, 1.02], (0.12, 0.001));
     let stated = [text.replace("estimated", "1.04,1.02")].map(|text| parsed(&text));
     let tests = [parsed(&text)];
-    let estimated = found_again("fung-demiray", &[0.02, 6.0], &tests, 3.0);
+    let estimated = accurate_fit("fung-demiray", &[0.02, 6.0], &tests, 3.0);
     let stretches = estimated.quality.zeros.iter().map(|zero| &zero.by);
     for (stretch, right) in stretches.zip([0.04, 0.02]) {
         assert!(
@@ -164,5 +167,5 @@ fn the_stretch_as_mounted_is_found_with_the_law() {
             .iter()
             .any(|remark| remark.contains("as mounted"))
     );
-    found_again("fung-demiray", &[0.02, 6.0], &stated, 1.0);
+    accurate_fit("fung-demiray", &[0.02, 6.0], &stated, 1.0);
 }

@@ -33,7 +33,7 @@ pub struct Row {
 
 impl Row {
     /// An observation's own weight.
-    pub fn own_weight(&self) -> f64 {
+    pub fn observation_weight(&self) -> f64 {
         self.weight / self.count.sqrt()
     }
 }

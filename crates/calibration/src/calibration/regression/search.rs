@@ -122,7 +122,9 @@ impl Search<'_> {
         let mut chosen: Vec<Vec<f64>> = Vec::new();
         for (sum, result) in minima {
             let result = self.of_law(result.clone());
-            if *sum <= ABOVE * minima[0].0 && chosen.iter().all(|own| self.differs(&result, own)) {
+            if *sum <= ABOVE * minima[0].0
+                && chosen.iter().all(|other| self.differs(&result, other))
+            {
                 chosen.push(result);
             }
         }

@@ -41,14 +41,14 @@ impl Zero {
         let mut zeros: Vec<Self> = tests.iter().enumerate().filter_map(of_record).collect();
         let mounted = || tests.iter().map(|data| data.mounted);
         // Forces are read before they are related to the cross-section at rest.
-        if mounted().any(|own| own.estimates_force_zero) {
+        if mounted().any(|mounting| mounting.estimates_force_zero) {
             let scale = tests
                 .iter()
                 .map(|data| data.largest_stress)
                 .fold(0.0, f64::max);
             zeros.extend([0, 1].map(|axis| Self::Force { axis, scale }));
         }
-        if mounted().any(|own| own.estimates_stretches()) {
+        if mounted().any(|mounting| mounting.estimates_stretches()) {
             zeros.extend([0, 1].map(|axis| Self::Stretch { axis }));
         }
         zeros
@@ -80,7 +80,7 @@ impl Zero {
         let by = self.by(value);
         let mut moved = *one;
         match self {
-            Self::Record { test: own, .. } if own == test => return data.moved(one, by),
+            Self::Record { test: number, .. } if number == test => return data.moved(one, by),
             Self::Force { axis, .. } if axis == one.axis => moved.stress -= by,
             Self::Stretch { axis } => return one.stretched(axis, 1.0 + by, data.stress_measure),
             _ => {}
@@ -128,8 +128,8 @@ impl MovedZero {
     fn remark(&self, number: usize, test: &TestData) -> Option<String> {
         let (by, error) = (self.by.value, self.by.standard_error);
         match self.zero {
-            Zero::Record { test: own, .. } => {
-                if own == number {
+            Zero::Record { test: record, .. } => {
+                if record == number {
                     self.remark_on_record(test)
                 } else {
                     None

@@ -103,12 +103,12 @@ fn a_rise_that_is_not_in_the_file_can_be_stated() {
     let hold = |i: i32| [2.0 + 0.1 * f64::from(i), 0.01];
     let complete: Vec<[f64; 2]> = [[0.0, 0.0]].into_iter().chain((0..20).map(hold)).collect();
     let part: Vec<[f64; 2]> = complete[1..].to_vec();
-    let of_whole = followed(&complete, "", &material);
+    let of_complete = followed(&complete, "", &material);
     let stated = followed(&part, "; ramp: 2 s", &material);
     let sudden = followed(&part, "", &material);
-    for ((a, b), c) in of_whole[1..].iter().zip(&stated).zip(&sudden) {
+    for ((a, b), c) in of_complete[1..].iter().zip(&stated).zip(&sudden) {
         assert!((a / b - 1.0).abs() < 1e-12, "{a} {b}");
-        assert!(c / a > 1.01 || c / of_whole[1] < 0.99, "{c} {a}");
+        assert!(c / a > 1.01 || c / of_complete[1] < 0.99, "{c} {a}");
     }
 }
 

@@ -176,8 +176,8 @@ fn softening_can_be_fitted_on_top_of_a_card_and_written_there() {
     };
     let written = card_text(&fit, &tests, &provenance);
     let read = Card::parse("soft", "soft.toml", &written).unwrap();
-    let own = fit.softened.unwrap().softening;
-    assert_eq!(read.law.softening(), Some(own));
+    let softening = fit.softened.unwrap().softening;
+    assert_eq!(read.law.softening(), Some(softening));
     assert_eq!(read.parameter("c10"), Some(C10));
     let record = read.fit.unwrap();
     assert!(record.softening && record.base_card.as_deref() == Some("own.toml"));
@@ -186,7 +186,7 @@ fn softening_can_be_fitted_on_top_of_a_card_and_written_there() {
     let read = Card::parse("soft", "soft.toml", &text).unwrap();
     assert_eq!(
         read.law.softening(),
-        together.softened.map(|own| own.softening)
+        together.softened.map(|softened| softened.softening)
     );
 }
 

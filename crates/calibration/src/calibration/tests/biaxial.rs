@@ -21,7 +21,7 @@ const TISSUES: [(&str, &[f64]); 5] = [
 ];
 
 /// Five protocols of a law with a noise of `share` of the largest stress.
-fn made(law: &str, values: &[f64], share: f64, seed: u64) -> TestData {
+fn noisy_protocols(law: &str, values: &[f64], share: f64, seed: u64) -> TestData {
     let ratios = [[1.0, 1.0], [1.0, 0.5], [0.5, 1.0], [1.0, 0.2], [0.2, 1.0]];
     record((law, values), (&ratios, 0.3), (share, seed))
 }
@@ -95,7 +95,7 @@ fn one_run_ends_at_the_optimum_of_many_starts() {
 #[test]
 fn parameters_of_made_tissue_lie_in_their_intervals_and_other_laws_do_not_explain_it() {
     for (law, truth) in TISSUES {
-        let actual = of(law, &made(law, truth, 0.01, 0), &starts(8));
+        let actual = of(law, &noisy_protocols(law, truth, 0.01, 0), &starts(8));
         let held: Vec<&str> = actual
             .parameters
             .iter()
@@ -112,7 +112,7 @@ fn parameters_of_made_tissue_lie_in_their_intervals_and_other_laws_do_not_explai
             let is_inside = (low..=high).contains(truth) || actual.quality.held[index];
             assert!(is_inside, "{law} {index}: {low} … {high}");
         }
-        let precise = made(law, truth, 5e-4, 1);
+        let precise = noisy_protocols(law, truth, 5e-4, 1);
         for (other, _) in TISSUES {
             let verdict = of(other, &precise, &starts(8)).quality.verdict.unwrap();
             let explains = verdict.answer != Answer::Systematic;
@@ -134,7 +134,7 @@ fn shear_determines_the_angle_with_its_sign_and_the_shear_stiffness() {
         TestData::parse("a.csv", &(head.to_owned() + &rows), &Statements::new()).unwrap()
     };
     let data = [
-        made("fung", &truth, 1e-6, 0),
+        noisy_protocols("fung", &truth, 1e-6, 0),
         test(
             "# test: simple-shear\nshear_strain [-],shear_stress [MPa]\n",
             &|amount| crate::material::curve::simple_shear(&*sheet, amount),
@@ -156,7 +156,7 @@ fn shear_determines_the_angle_with_its_sign_and_the_shear_stiffness() {
 #[test]
 fn a_convex_energy_is_the_best_one_within_its_limit() {
     let law = "holzapfel-gasser-ogden";
-    let data = made(law, &[0.02, 0.05, 8.0, 0.0, 0.6], 0.01, 1);
+    let data = noisy_protocols(law, &[0.02, 0.05, 8.0, 0.0, 0.6], 0.01, 1);
     let [few, many] = [8, 60].map(|count| of("fung", &data, &starts(count)));
     let ratio = few.quality.sum_of_squares / many.quality.sum_of_squares;
     assert!((ratio - 1.0).abs() < 1e-6, "{ratio}");
@@ -174,7 +174,7 @@ fn a_convex_energy_is_the_best_one_within_its_limit() {
 #[test]
 fn a_stated_parameter_is_not_fitted() {
     let (law, truth) = TISSUES[3];
-    let data = made(law, truth, 0.01, 0);
+    let data = noisy_protocols(law, truth, 0.01, 0);
     let free = of(law, &data, &starts(8));
     for (index, key) in [(0, "c10"), (5, "angle")] {
         let value = free.parameters[index].value;

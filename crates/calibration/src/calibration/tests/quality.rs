@@ -103,11 +103,11 @@ fn two_parameters_have_the_uncertainty_of_linear_regression() {
             let (stretch, _) = points[i];
             -slope(stretch) / [1.0, stretch][j]
         });
-        let left =
+        let residual =
             |i: usize, _| points[i].1 + (design.row(i) * DVector::from_vec(vec![c10, c01]))[0];
         let residuals = CurveResiduals {
             design: &design,
-            residual: &DVector::from_fn(12, left),
+            residual: &DVector::from_fn(12, residual),
             orders: &[vec![Curve::even((0..12).collect())]],
             sizes: &DVector::from_element(12, 1.0),
         };

@@ -46,7 +46,11 @@ fn shear_and_tension_together_determine_both_parameters_of_mooney_and_rivlin() {
         for sign in [1.0, -1.0] {
             let tests = [sheared(is_machine, sign), pulled()];
             let fit = fit(law, &tests, &FitSettings::default()).unwrap();
-            let actual: Vec<f64> = fit.parameters.iter().map(|own| own.value).collect();
+            let actual: Vec<f64> = fit
+                .parameters
+                .iter()
+                .map(|parameter| parameter.value)
+                .collect();
             for (actual, truth) in actual.iter().zip([C10, C01]) {
                 assert!((actual / truth - 1.0).abs() < 1e-6, "{actual} {truth}");
             }

@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::quality::{Quality, rounded, stable_ranges, stretch_range, untested};
-use super::verdict::{LeftOver, Verdict};
+use super::verdict::{FitResiduals, Verdict};
 use crate::calibration::data::TestData;
 use crate::calibration::least_squares::{self, Residuals};
 use crate::calibration::regression::{Estimated, Misfit, Response, Row};
@@ -15,7 +15,7 @@ use crate::statistics::{CurveNoise, Estimate};
 /// proportional to the stress.
 fn other_size(rows: &[Row], residual: &DVector<f64>, weighting: Weighting) -> DVector<f64> {
     if weighting == Weighting::Relative {
-        return DVector::from_iterator(rows.len(), rows.iter().map(Row::own_weight));
+        return DVector::from_iterator(rows.len(), rows.iter().map(Row::observation_weight));
     }
     let pairs = rows.iter().zip(residual.iter());
     let modelled = pairs.map(|(row, residual)| (row.stress - residual / row.weight).abs());
@@ -65,20 +65,20 @@ impl Judged {
         let judged = jacobian.and_then(|jacobian| {
             let law = response.law(values);
             let rounded = rounded(&response.moved_tests(values), &*law, misfit.weighting);
-            let left_over = LeftOver {
+            let residuals = FitResiduals {
                 curves: misfit.curves(),
                 design: &jacobian.select_columns(&free),
                 residual: &residual,
                 other_size: &other_size(&misfit.rows, &residual, misfit.weighting),
                 rounded: rounded.map(|mean| mean * rows),
             };
-            left_over.judge()
+            residuals.judge()
         });
         let (verdict, noise): (_, Option<CurveNoise>) = judged.unzip();
         let white = || rows * (sum_of_squares / rows).ln();
         let of_residuals = noise.as_ref().map_or_else(white, CurveNoise::surprise);
         // The residuals of a relative fit are those of the stresses times their weights.
-        let weights = misfit.rows.iter().map(|row| row.own_weight().ln());
+        let weights = misfit.rows.iter().map(|row| row.observation_weight().ln());
         Self {
             at_bound,
             fixed,
@@ -99,10 +99,10 @@ impl Judged {
             && verdict.answer.has_intervals()
         {
             let sums = [(square, points), (self.sum_of_squares, rows)];
-            let [own, of_means] =
+            let [of_points, of_means] =
                 sums.map(|(sum, count)| sum / (count - estimates.min(count - 1)) as f64);
             let gathered = points as f64 / rows as f64;
-            verdict.effective_points *= gathered * (own / of_means).min(1.0);
+            verdict.effective_points *= gathered * (of_points / of_means).min(1.0);
         }
     }
 
@@ -144,11 +144,11 @@ impl Judged {
             // Of the interval: the mean of the covariances is mostly that of improbable noises whose lengths are large.
             let reach = noise.reach();
             // Rounding makes the variance of what the data do not determine a negative one.
-            let own = match error(i).is_finite() {
+            let standard_error = match error(i).is_finite() {
                 true => noise.half_width(&unit) / reach,
                 false => f64::NAN,
             };
-            estimates[*row] = Estimate::new(values[*row], own, reach);
+            estimates[*row] = Estimate::new(values[*row], standard_error, reach);
             for (j, column) in free.iter().enumerate().filter(is_known) {
                 correlation[(*row, *column)] = covariance[(i, j)] / (error(i) * error(j));
             }

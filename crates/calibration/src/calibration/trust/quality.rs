@@ -101,8 +101,8 @@ impl Quality {
     /// With the last estimates as those of zeros.
     pub(in crate::calibration) fn with_zeros(mut self, zeros: &[Zero]) -> Self {
         let parameters = self.estimates.len() - zeros.len();
-        let own = self.estimates.drain(parameters..);
-        let pairs = zeros.iter().zip(own);
+        let of_zeros = self.estimates.drain(parameters..);
+        let pairs = zeros.iter().zip(of_zeros);
         self.zeros = pairs
             .map(|(zero, value)| MovedZero::new(*zero, &value))
             .collect();
@@ -120,8 +120,8 @@ impl Quality {
 
     /// The number of independent points that tell as much of the noise.
     pub fn effective_points(&self) -> f64 {
-        let own = self.verdict.map(|verdict| verdict.effective_points);
-        own.unwrap_or(self.points as f64)
+        let effective = self.verdict.map(|verdict| verdict.effective_points);
+        effective.unwrap_or(self.points as f64)
     }
 
     /// Whether no fitted parameter is held by a bound or has an interval that holds zero.
@@ -171,12 +171,12 @@ pub fn rounded(tests: &[TestData], law: &dyn HyperelasticLaw, weighting: Weighti
 /// The stretches within which a law is stable in the usual tests.
 pub fn stable_ranges(law: &dyn HyperelasticLaw, tests: &[TestData]) -> Vec<StableRange> {
     let range = |(_, mode): (&str, Mode)| {
-        let own = || tests.iter().filter(|data| is_of(data, mode));
+        let of_mode = || tests.iter().filter(|data| is_of(data, mode));
         StableRange {
             mode,
             stretches: stable_range(law, mode),
-            needed: match own().next() {
-                Some(_) => stretch_range(own()),
+            needed: match of_mode().next() {
+                Some(_) => stretch_range(of_mode()),
                 None => stretch_range(tests.iter()),
             },
         }

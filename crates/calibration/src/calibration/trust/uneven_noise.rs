@@ -79,10 +79,10 @@ fn specimens(
     let is_stated = tests.iter().all(|test| test.specimen.is_some());
     if is_stated && names.len() > 1 {
         let of = |name: &&String| {
-            let own = tests
+            let of_specimen = tests
                 .iter()
                 .filter(|test| test.specimen.as_ref() == Some(name));
-            own.flat_map(&protocols).flatten().collect()
+            of_specimen.flat_map(&protocols).flatten().collect()
         };
         let groups: Vec<Pairs> = names.iter().map(of).collect();
         return Some(specimens_differ(&differing(&groups)?, has_intervals));
@@ -124,11 +124,16 @@ fn differing(groups: &[Pairs]) -> Option<Vec<f64>> {
 /// How many times the law's stress was measured, and its variance by the noise of the rows, neighbours of which may correlate.
 fn factor(pairs: &Pairs) -> Option<[f64; 2]> {
     let square: f64 = pairs.iter().map(|[fitted, _]| fitted * fitted).sum();
-    let along: f64 = pairs.iter().map(|[fitted, left]| fitted * left).sum();
+    let along: f64 = pairs
+        .iter()
+        .map(|[fitted, residual]| fitted * residual)
+        .sum();
     let factor = along / square;
-    let rest = pairs.iter().map(|[fitted, left]| left - factor * fitted);
+    let rest = pairs
+        .iter()
+        .map(|[fitted, residual]| residual - factor * fitted);
     let rest: Vec<f64> = rest.collect();
-    let squares: f64 = rest.iter().map(|left| left * left).sum();
+    let squares: f64 = rest.iter().map(|residual| residual * residual).sum();
     let products: f64 = rest.windows(2).map(|pair| pair[0] * pair[1]).sum();
     let correlation = (products / squares).clamp(0.0, 0.99);
     let fewer = (1.0 + correlation) / (1.0 - correlation);

@@ -109,7 +109,7 @@ fn percent(probability: f64) -> String {
 const DOUBTED: f64 = 0.01;
 
 /// What a fit leaves, in the order of its curves.
-pub struct LeftOver<'a> {
+pub struct FitResiduals<'a> {
     /// The rows along each curve.
     pub curves: Vec<Rows>,
     /// Derivatives of the residuals by the parameters that no bound holds.
@@ -121,7 +121,7 @@ pub struct LeftOver<'a> {
     pub rounded: [f64; 2],
 }
 
-impl LeftOver<'_> {
+impl FitResiduals<'_> {
     /// The verdict, and what the estimates are worth; `None` where nothing is estimated, or no freedom is left.
     pub fn judge(&self) -> Option<(Verdict, CurveNoise)> {
         let estimates = self.design.ncols();
@@ -194,8 +194,8 @@ impl LeftOver<'_> {
         let share = 1.0 - self.design.ncols() as f64 / rows as f64;
         let mean = even.norm_squared() / rows as f64;
         let of_curve = |curve: &Rows| {
-            let own = curve.iter().map(|(row, _)| even[*row].powi(2));
-            (own.sum::<f64>() / curve.len() as f64, curve.len() as f64)
+            let scaled = curve.iter().map(|(row, _)| even[*row].powi(2));
+            (scaled.sum::<f64>() / curve.len() as f64, curve.len() as f64)
         };
         let squares: Vec<(f64, f64)> = self.curves.iter().map(of_curve).collect();
         let pairs = squares
@@ -225,8 +225,8 @@ impl LeftOver<'_> {
         let freedom = self.residual.len() - self.design.ncols();
         let share = freedom as f64 / self.residual.len() as f64;
         let [stresses, both] = self.rounded.map(|one| share * one);
-        let left = self.residual.norm_squared();
-        left <= FACTOR * stresses || (FAR * both..=FACTOR * both).contains(&left)
+        let square = self.residual.norm_squared();
+        square <= FACTOR * stresses || (FAR * both..=FACTOR * both).contains(&square)
     }
 }
 
@@ -299,11 +299,11 @@ fn orders(curves: &[Rows]) -> Vec<Vec<Curve>> {
 /// Legendre polynomials of the strain along each curve, a column each; a curve with more points has more of them, up to some
 /// beyond the number of estimates, whose law follows the first ones.
 fn smooth_functions(curves: &[Rows], rows: usize, estimates: usize) -> DMatrix<f64> {
-    const BEYOND: usize = 4;
+    const MORE: usize = 4;
     const POINTS_EACH: usize = 3;
     let mut columns = Vec::new();
     for curve in curves {
-        let count = (estimates + BEYOND).min(curve.len() / POINTS_EACH);
+        let count = (estimates + MORE).min(curve.len() / POINTS_EACH);
         let [low, high] = extremes(curve.iter().map(|(_, x)| *x));
         if high <= low {
             continue;

@@ -40,8 +40,9 @@ pub fn warnings(quality: &Quality, parameters: &[Parameter], rival: Option<&Riva
 /// F = (S′/S − 1) (nₑ − k)/k.
 fn is_possible(rival: &Rival, quality: &Quality) -> bool {
     let parameters = rival.values.len() as f64;
-    let left = quality.effective_points() - parameters;
-    quality.has_intervals() && f_tail([parameters, left], rival.worse * left / parameters) > 0.05
+    let freedom = quality.effective_points() - parameters;
+    quality.has_intervals()
+        && f_tail([parameters, freedom], rival.worse * freedom / parameters) > 0.05
 }
 
 /// Zeros that were found in the records and are taken as known.

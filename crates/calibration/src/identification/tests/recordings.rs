@@ -12,30 +12,35 @@ fn what_bends_the_functions_and_hides_from_the_misfit_is_named() {
     let interval = 1e3 * (sound.times[1] - sound.times[0]);
     let count = sound.times.len() as f64;
     let cases: [(&str, f64, Change); 5] = [
-        ("a zero error of the force of ", 0.05 * force, &|own| {
-            own.force.iter_mut().for_each(|f| *f += 0.05 * force);
-        }),
+        (
+            "a zero error of the force of ",
+            0.05 * force,
+            &|recording| {
+                recording.force.iter_mut().for_each(|f| *f += 0.05 * force);
+            },
+        ),
         (
             "a zero error of the extension of ",
             0.05 * extension,
-            &|own| {
-                own.extension
+            &|recording| {
+                recording
+                    .extension
                     .iter_mut()
                     .for_each(|x| *x += 0.05 * extension);
             },
         ),
-        ("a force that drifts by ", 0.1 * force, &|own| {
-            let rows = own.force.iter_mut().enumerate();
+        ("a force that drifts by ", 0.1 * force, &|recording| {
+            let rows = recording.force.iter_mut().enumerate();
             rows.for_each(|(i, f)| *f += 0.1 * force * i as f64 / count);
         }),
-        ("a force that is recorded ", interval, &|own| {
-            own.force.rotate_right(1);
-            own.force[0] = own.force[1];
+        ("a force that is recorded ", interval, &|recording| {
+            recording.force.rotate_right(1);
+            recording.force[0] = recording.force[1];
         }),
         (
             "a mass that is smaller by ",
             0.1 / 1.1 * 1.1e6 * sound.mass,
-            &|own| own.mass *= 1.1,
+            &|recording| recording.mass *= 1.1,
         ),
     ];
     for (words, size, change) in cases {
