@@ -1,8 +1,10 @@
 //! The measured field in a window without a display: edges are clicked, the field is corrected, everything goes out.
 
+use eframe::egui::accesskit::Role;
 use eframe::egui::{Modifiers, PointerButton, Pos2};
 use egui_kittest::kittest::Queryable;
 use gelbench::results::Drawing;
+use gelbench_report::results::MeshFigure;
 use gelbench_workbench::logic::field::settings::TEXTS;
 use gelbench_workbench::logic::field::{Edge, middle};
 use gelbench_workbench::views::app::{Tab, Workbench};
@@ -144,4 +146,60 @@ fn warnings_name_what_the_view_offers() {
     assert!(warnings.contains(&advice), "{warnings}");
     assert!(!warnings.contains(gap.option), "{warnings}");
     assert!(bench.query_by_label_contains(&advice).is_some());
+}
+
+#[test]
+fn two_photographs_and_an_edge_lead_to_force_and_stress() {
+    let mut bench = window([1400.0, 1400.0], small());
+    let first = include_bytes!("../../examples/gel_0.png");
+    state_mut(&mut bench).open("gel_0.png", first);
+    bench.step();
+    assert!(
+        bench
+            .query_by_label_contains("drop an image under load")
+            .is_some()
+    );
+    let outline = include_bytes!("../../examples/gel_edge.csv");
+    state_mut(&mut bench).open("gel_edge.csv", outline);
+    let loaded = include_bytes!("../../examples/gel_1.png");
+    state_mut(&mut bench).open("gel_1.png", loaded);
+    until(&mut bench, |bench| bench.fields().answer().is_some());
+    bench.step();
+    let unit = &TEXTS[1];
+    let asks = bench.query_all_by_label_contains(unit.label).count();
+    assert!(asks > 1, "the length of a pixel is asked for");
+    bench
+        .get_by_role_and_label(Role::TextInput, unit.label)
+        .focus();
+    bench.step();
+    bench
+        .get_by_role_and_label(Role::TextInput, unit.label)
+        .type_text("0.05 mm");
+    bench.step();
+    for edge in ["top", "bottom"] {
+        let fields = state_mut(&mut bench).fields_mut();
+        fields.state_edge(edge, Edge::Free);
+    }
+    bench.get_by_label("correct").click();
+    bench.step();
+    until(&mut bench, |bench| !bench.fields().is_busy());
+    bench.step();
+    let answer = state(&bench).fields().answer().unwrap().as_ref();
+    let answer = answer.unwrap();
+    assert_eq!(answer.preview.photo.as_ref().unwrap().size, [420, 240]);
+    let (frames, _) = answer.corrected.as_ref().unwrap();
+    let (photo, Drawing::Mesh(deformed)) = frames[0].photo.as_ref().unwrap() else {
+        panic!("a mesh is drawn");
+    };
+    let Drawing::Mesh(at_rest) = &answer.preview.drawing else {
+        panic!("a mesh is drawn");
+    };
+    let right = |figure: &MeshFigure| {
+        let corners = figure.cells.iter().flatten();
+        corners.fold(f64::MIN, |most, corner| most.max(corner[0]))
+    };
+    assert!(right(deformed) > right(at_rest) + 0.1);
+    assert!(right(deformed) < photo.corners[1][0]);
+    assert!(bench.query_by_label_contains("the camera image").is_some());
+    assert!(bench.query_by_label_contains("force on right").is_some());
 }

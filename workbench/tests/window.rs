@@ -173,7 +173,7 @@ fn dropped_files_find_their_view_and_bad_ones_are_told() {
 #[test]
 fn a_dropped_file_that_nothing_reads_says_what_would_be() {
     let mut bench = window([800.0, 600.0], small());
-    for (name, content) in [("photo.jpg", &b"\xff\xd8"[..]), ("notes.md", b"# notes")] {
+    for (name, content) in [("film.mp4", &b"\xff\xd8"[..]), ("notes.md", b"# notes")] {
         state_mut(&mut bench).open(name, content);
         bench.step();
         let message = state(&bench).message();

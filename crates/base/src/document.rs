@@ -50,7 +50,7 @@ pub use edited::{EditedDocument, NewValue};
 pub use encoding::TextEncoding;
 pub use explore::{FoundKey, explore};
 pub use formats::is_table_path;
-pub use given::with_files;
+pub use given::{given, with_files};
 pub use head::{Faulty, Head, Statements};
 pub use keys::{Key, Presence, Takes};
 pub use records::{read_records, write_records};

@@ -44,7 +44,7 @@ pub use grey::GreyImage;
 pub use markers::series;
 pub use noise::Noise;
 pub use patches::Patches;
-pub use read::{ImageFile, is_image_path, list, of_bytes, pages};
+pub use read::{ImageFile, in_order, is_image_path, list, of_bytes, pages};
 pub use region::Region;
 pub use spline::Spline;
 pub use state::Tracked;

@@ -24,17 +24,22 @@ use super::scene::CardFile;
 use super::studies::{NamedFile, paths};
 
 mod edges;
+mod photo;
 mod request;
 pub mod settings;
 
 pub use edges::{Edge, middle, nearest};
+pub use photo::Photo;
+use photo::Photos;
 use request::{length, request};
 
 /// A measured field and what is said of it, texts as a user writes them.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct FieldQuestion {
-    /// The files of the field.
+    /// The files of the field, or camera images, the first one at rest.
     pub files: Vec<NamedFile>,
+    /// The specimen's edge: a table of lines, or an image of its region, white on black.
+    pub edge_file: Option<NamedFile>,
     /// The material.
     pub card: CardFile,
     /// Thickness at rest, such as `2 mm`.
@@ -60,6 +65,7 @@ impl FieldQuestion {
     pub fn of(files: Vec<NamedFile>, card: CardFile) -> Self {
         Self {
             files,
+            edge_file: None,
             card,
             thickness: "2 mm".to_owned(),
             unit: String::new(),
@@ -88,6 +94,8 @@ pub struct Preview {
     pub markers: Vec<[[f64; 2]; 2]>,
     /// What deserves attention.
     pub warnings: Vec<String>,
+    /// The first camera image, where there are images.
+    pub photo: Option<Photo>,
 }
 
 /// A corrected frame.
@@ -105,6 +113,8 @@ pub struct CorrectedFrame {
     pub explained: bool,
     /// Force on each edge that is not free: name, x, y with their 95 % intervals in N.
     pub forces: Vec<(String, [[f64; 3]; 2])>,
+    /// The frame's camera image with the deformed mesh, where there are images.
+    pub photo: Option<(Photo, Drawing)>,
 }
 
 /// What came of a question.
@@ -135,14 +145,19 @@ impl Worker for FieldCorrector {
 fn with_files_of<T>(question: &FieldQuestion, work: impl FnOnce() -> T) -> T {
     let card = &question.card;
     let card_file = (card.reference(), card.text.clone().into_bytes());
-    let files: Vec<NamedFile> = question.files.iter().cloned().chain([card_file]).collect();
+    let files = question.files.iter().chain(&question.edge_file).cloned();
+    let files: Vec<NamedFile> = files.chain([card_file]).collect();
     with_files(paths(&files), work)
 }
 
 fn answer(question: &FieldQuestion) -> Result<FieldAnswer, Error> {
     let begun = Instant::now();
     let mut study = MarkerStudy::prepare(request(question)?)?;
-    let preview = preview(&study);
+    let photos = Photos::of(question)?;
+    let preview = Preview {
+        photo: photos.at_rest()?,
+        ..preview(&study)
+    };
     if !question.correct {
         return Ok(FieldAnswer {
             preview,
@@ -160,12 +175,16 @@ fn answer(question: &FieldQuestion) -> Result<FieldAnswer, Error> {
         let files = FrameFiles::new(&study, frame, estimate);
         output::write_frame(&mut report.files, &files.grids, &files.tables)?;
     }
-    let corrected = frames()
-        .map(|(frame, estimate)| corrected(&study, frame, estimate))
-        .collect();
+    let corrected = frames().map(|(frame, estimate)| {
+        let photo = photos.of_frame(frame.number)?;
+        Ok(CorrectedFrame {
+            photo: photo.map(|photo| (photo, deformed(&study.mesh, &estimate.displacement))),
+            ..corrected(&study, frame, estimate)
+        })
+    });
     Ok(FieldAnswer {
         preview,
-        corrected: Some((corrected, report)),
+        corrected: Some((corrected.collect::<Result<_, Error>>()?, report)),
     })
 }
 
@@ -235,6 +254,7 @@ impl FieldQuestion {
         let options = [(settings::MATERIAL.option, card.as_str())]
             .into_iter()
             .chain(texts.map(|(setting, text)| (setting.option, text.as_str())))
+            .chain(self.edge_option())
             .chain([("--study", KNOWN)]);
         for (option, value) in options {
             if !value.trim().is_empty() {
@@ -247,6 +267,15 @@ impl FieldQuestion {
         }
         words.join(" ")
     }
+}
+
+/// The mesh with its edges where the field moves them.
+fn deformed(mesh: &Mesh, displacement: &[f64]) -> Drawing {
+    let mut moved = mesh.clone();
+    for (node, moves) in moved.nodes.iter_mut().zip(displacement.chunks_exact(2)) {
+        *node = [node[0] + moves[0], node[1] + moves[1]];
+    }
+    outlines(&moved)
 }
 
 /// The mesh with its edges.
@@ -298,6 +327,7 @@ fn preview(study: &MarkerStudy) -> Preview {
             })
             .collect(),
         warnings: study.warnings.iter().map(settings::warning_text).collect(),
+        photo: None,
     }
 }
 
@@ -346,5 +376,6 @@ fn corrected(study: &MarkerStudy, frame: &Frame, estimate: &FieldEstimate) -> Co
         verdict: estimate.verdict.answer.words().to_owned(),
         explained: estimate.has_intervals(),
         forces: forces.collect(),
+        photo: None,
     }
 }

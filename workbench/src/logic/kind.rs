@@ -4,8 +4,9 @@ use gelbench::calibration::TestData;
 use gelbench::document::Statements;
 use gelbench::document::with_files;
 use gelbench::markers::{ReadSettings, read};
-use gelbench_base::document::is_table_path;
+use gelbench_base::document::{is_table_path, plain_name};
 use gelbench_calibration::calibration::KEYS;
+use gelbench_images::images::is_image_path;
 use std::path::{Path, PathBuf};
 
 /// What a file may be.
@@ -17,8 +18,10 @@ pub enum Kind {
     Study,
     /// Data of a material test.
     Test,
-    /// A measured field.
+    /// A measured field, or a camera image of one.
     Field,
+    /// The edge of a specimen: a table of lines.
+    Edge,
     /// A mesh, which a study may name.
     Named,
     /// What nothing reads.
@@ -35,6 +38,7 @@ impl Kind {
         match (ending.as_str(), text) {
             ("toml", Some(text)) => Self::of_toml(text),
             ("vtu" | "vtk" | "pvd" | "frd", _) => Self::Field,
+            _ if is_image_path(Path::new(name)) => Self::Field,
             _ if is_table_path(Path::new(name)) => match text {
                 Some(text) => Self::of_table(name, text),
                 // Tables in other encodings are measured fields: those of cameras.
@@ -49,7 +53,8 @@ impl Kind {
     pub fn nothing_reads(name: &str) -> String {
         format!(
             "nothing reads {name}. What is read: studies and cards (.toml, UTF-8), tests (.csv, .txt, .tsv, .dat), measured fields \
-             (tables, also .xlsx, .npy, .npz and .mat; .vtu, .vtk, .pvd, .frd), and meshes that a study names (.msh, .inp)"
+             (tables, also .xlsx, .npy, .npz and .mat; .vtu, .vtk, .pvd, .frd; camera images: .png, .tif, .bmp, .jpg), their edges (tables of \
+             x, y, line), and meshes that a study names (.msh, .inp)"
         )
     }
 
@@ -74,6 +79,9 @@ impl Kind {
             .lines()
             .find(|line| !line.trim_start().starts_with('#'));
         let first = first.unwrap_or_default();
+        if is_edge(first) {
+            return Self::Edge;
+        }
         let columns = first.split([',', ';', '\t']).count();
         let states = |key: &&str| {
             text.lines().any(|line| {
@@ -99,6 +107,14 @@ impl Kind {
     }
 }
 
+/// Whether the head of a table is that of lines: x, y, and nothing but the number of the line beside them.
+fn is_edge(head: &str) -> bool {
+    let without_unit = |name: &str| plain_name(name.split('[').next().unwrap_or_default());
+    let names: Vec<String> = head.split([',', ';', '\t']).map(without_unit).collect();
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    matches!(names[..], ["x", "y"] | ["x", "y", "line"])
+}
+
 /// Lines by which a table is told: no frame waits for a long one.
 const LINES: usize = 300;
 
@@ -122,6 +138,7 @@ mod tests {
             ("measured.csv", field, Kind::Field),
             ("test.csv", test, Kind::Test),
             ("bare.csv", "strain,stress\n0.1,0.2\n", Kind::Test),
+            ("edge.csv", "x [mm],y [mm],line\n0,0,1\n", Kind::Edge),
             ("px.csv", "a,b,c,d\n1,2,3,4\n", Kind::Field),
             ("motion.toml", motion, Kind::Study),
             ("card.toml", card, Kind::Sheet),
@@ -133,6 +150,7 @@ mod tests {
         }
         assert_eq!(Kind::of("camera.csv", None), Kind::Field);
         assert_eq!(Kind::of("camera.XLSX", None), Kind::Field);
-        assert_eq!(Kind::of("photo.jpg", None), Kind::Unread);
+        assert_eq!(Kind::of("photo.jpg", None), Kind::Field);
+        assert_eq!(Kind::of("film.mp4", None), Kind::Unread);
     }
 }

@@ -139,7 +139,8 @@ fn grip(ui: &mut Ui, scene: &mut Scene, hold: &mut Hold) {
         -0.4 * length..=0.4 * length,
     );
     hold(ui.add(across.suffix(" mm").text("across")));
-    let mut degrees = scene.grip.angle.to_degrees();
+    // Without the sign of a zero.
+    let mut degrees = scene.grip.angle.to_degrees() + 0.0;
     let response = ui.add(
         Slider::new(&mut degrees, -60.0..=60.0)
             .suffix(" °")

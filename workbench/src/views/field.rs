@@ -1,6 +1,9 @@
 //! Measured fields: files are dropped, looked at, edges are said, the field is corrected and judged.
 
+use std::path::Path;
+
 use eframe::egui::{Button, Frame, Grid, ScrollArea, TextEdit, Ui};
+use gelbench_images::images::{in_order, is_image_path};
 
 use super::surface::View;
 use super::{controls, exports, figures, report, study};
@@ -14,8 +17,10 @@ use crate::logic::table::Table;
 
 mod edges;
 mod frames;
+mod photos;
 
 use edges::Asked;
+use photos::Photographs;
 
 /// The width from which what is said and what was found stand side by side.
 const WIDE: f32 = 900.0;
@@ -37,6 +42,7 @@ pub struct Fields {
     view: Option<View>,
     /// What was seen of the files last.
     seen: Option<Preview>,
+    photographs: Photographs,
 }
 
 impl Fields {
@@ -53,21 +59,35 @@ impl Fields {
             asked: None,
             view: None,
             seen: None,
+            photographs: Photographs::default(),
         }
     }
 
-    /// Takes a file of markers; another one before it is another frame.
+    /// Takes a file of markers, or a camera image; another one before it is another frame. An image that is called a mask is the specimen's
+    /// region.
     pub fn put(&mut self, file: NamedFile) {
+        if is_image_path(Path::new(&file.0)) && file.0.to_lowercase().contains("mask") {
+            return self.put_edge(file);
+        }
         self.seen = None;
         self.question.files.retain(|(known, _)| *known != file.0);
         self.question.files.push(file);
-        self.question.files.sort();
+        self.question
+            .files
+            .sort_by_cached_key(|(name, _)| in_order(name));
+        self.look();
+    }
+
+    /// Takes the specimen's edge: a table of lines, or an image of its region.
+    pub fn put_edge(&mut self, file: NamedFile) {
+        self.question.edge_file = Some(file);
         self.look();
     }
 
     /// Opens the example, whose grips are rigid and whose long sides are free.
     pub fn open_example(&mut self) {
         self.question.files = vec![("measured_plate.csv".to_owned(), EXAMPLE.to_vec())];
+        self.question.edge_file = None;
         let edges = [
             ("left", Edge::Rigid),
             ("right", Edge::Rigid),
@@ -85,8 +105,12 @@ impl Fields {
         self.question.card = card.clone();
     }
 
+    /// Looks at the files; one image alone waits for the next.
     fn look(&mut self) {
-        self.ask(false);
+        let waits = self.question.has_images() && self.question.files.len() < 2;
+        if !waits && !self.question.files.is_empty() {
+            self.ask(false);
+        }
     }
 
     fn ask(&mut self, correct: bool) {
@@ -128,6 +152,7 @@ impl Fields {
                 self.seen = Some(preview.clone());
             }
             self.answer = Some(answer);
+            self.photographs = Photographs::default();
             self.frame = usize::MAX;
         }
     }
@@ -252,7 +277,8 @@ impl Fields {
         if self.question.files.is_empty() {
             ui.label(
                 "Drop the file of your markers here: a table with x, y, ux, uy, or an export of DICe, VIC, MatchID, GOM, \
-                 pyALDIC or muDIC. Several files are frames. No data leave this machine.",
+                 pyALDIC or muDIC. Several files are frames. Or drop camera images of a speckled specimen, the first one at rest, \
+                 and its edge: a table of x, y, line, or a mask. No data leave this machine.",
             );
         }
         let mut gone = None;
@@ -270,9 +296,20 @@ impl Fields {
         if let Some(number) = gone {
             self.question.files.remove(number);
             (self.answer, self.seen) = (None, None);
-            if !self.question.files.is_empty() {
-                self.look();
-            }
+            self.look();
+        }
+        if self.question.has_images() && self.question.files.len() < 2 {
+            ui.label("This is the specimen at rest: drop an image under load beside it.");
+        }
+        let edge_name = self.question.edge_file.as_ref().map(|(name, _)| name);
+        if let Some(name) = edge_name.cloned() {
+            ui.horizontal(|ui| {
+                ui.label(format!("edge of the specimen: {name}"));
+                if ui.small_button("remove").clicked() {
+                    self.question.edge_file = None;
+                    self.look();
+                }
+            });
         }
     }
 

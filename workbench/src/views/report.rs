@@ -122,7 +122,7 @@ pub fn picture(ui: &mut Ui, name: &str, drawing: &Drawing) {
             ui.label(format!("{}, at {} s", moving.title, frame.time));
             panels(ui, &moving.quantity, Scale::Linear, &frame.panels);
         }
-        Drawing::Mesh(figure) => drop(mesh(ui, figure)),
+        Drawing::Mesh(figure) => mesh(ui, figure),
     }
 }
 
@@ -217,9 +217,14 @@ pub fn edge_colour(figure: &MeshFigure, name: &str) -> Color32 {
     Color32::from_rgb(r, g, b)
 }
 
-/// A mesh and its edges, each in a colour; the view and where it is, so that more can be drawn on it.
-pub fn mesh(ui: &mut Ui, figure: &MeshFigure) -> (View, Rect) {
-    let (view, area) = room(ui, figure.cells.iter().flatten());
+/// A mesh and its edges, each in a colour.
+pub fn mesh(ui: &mut Ui, figure: &MeshFigure) {
+    let room = room(ui, figure.cells.iter().flatten());
+    mesh_in(ui, room, figure);
+}
+
+/// The same in a room that has been allocated for it.
+pub fn mesh_in(ui: &Ui, (view, area): (View, Rect), figure: &MeshFigure) {
     let painter = ui.painter().with_clip_rect(area.expand(8.0));
     let faint = Stroke::new(0.5, ui.visuals().text_color().gamma_multiply(0.4));
     let positions = |line: &[[f64; 2]]| line.iter().map(|position| view.at(*position)).collect();
@@ -232,5 +237,4 @@ pub fn mesh(ui: &mut Ui, figure: &MeshFigure) -> (View, Rect) {
             painter.add(Shape::line(positions(line), Stroke::new(3.0, ink)));
         }
     }
-    (view, area)
 }

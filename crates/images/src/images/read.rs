@@ -1,7 +1,7 @@
 //! Images from files: PNG, TIFF of one or many pages, BMP and JPEG; 8 or 16 bit, grey or colour.
 
 use std::fs::File;
-use std::io::{BufRead, BufReader, Seek};
+use std::io::{BufRead, BufReader, Cursor, Seek};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -12,6 +12,7 @@ use tiff::decoder::{Decoder, DecodingResult};
 
 use super::grey::GreyImage;
 use crate::error::Error;
+use gelbench_base::document::given;
 
 /// Pixels of the largest image that is read.
 const MOST_PIXELS: u64 = 1 << 27;
@@ -40,9 +41,22 @@ pub struct ImageFile {
     pub path: PathBuf,
     /// The page of a TIFF file, from 0.
     pub page: usize,
-    /// The image that is in memory.
-    in_memory: Option<Arc<GreyImage>>,
+    source: Source,
 }
+
+/// Where an image comes from.
+#[derive(Clone, Debug, PartialEq)]
+enum Source {
+    Disk,
+    /// The bytes of a file that a program gives.
+    Bytes(Arc<[u8]>),
+    Values(Arc<GreyImage>),
+}
+
+/// What images are decoded from.
+trait Encoded: BufRead + Seek {}
+
+impl<T: BufRead + Seek> Encoded for T {}
 
 /// Whether a file is an image by the end of its name.
 pub fn is_image_path(path: &Path) -> bool {
@@ -127,7 +141,7 @@ fn matches(pattern: &[u8], name: &[u8]) -> bool {
 }
 
 /// A key by which names sort with their numbers as numbers.
-fn in_order(name: &str) -> String {
+pub fn in_order(name: &str) -> String {
     let (mut key, mut digits) = (String::new(), String::new());
     for letter in name.chars().chain(['\0']) {
         if letter.is_ascii_digit() {
@@ -148,10 +162,11 @@ fn in_order(name: &str) -> String {
 /// # Errors
 /// [`Error::Input`] where it cannot be read.
 pub fn pages(path: &Path) -> Result<Vec<ImageFile>, Error> {
+    let first = ImageFile::new(path, 0);
     if !is_tiff(path) {
-        return Ok(vec![ImageFile::new(path, 0)]);
+        return Ok(vec![first]);
     }
-    let mut decoder = decoder(path)?;
+    let mut decoder = first.decoder()?;
     let mut count = 1;
     while decoder.more_images() {
         decoder
@@ -159,17 +174,11 @@ pub fn pages(path: &Path) -> Result<Vec<ImageFile>, Error> {
             .map_err(|fault| refuse(path, fault, KINDS))?;
         count += 1;
     }
-    Ok((0..count).map(|page| ImageFile::new(path, page)).collect())
-}
-
-fn open(path: &Path) -> Result<BufReader<File>, Error> {
-    let file =
-        File::open(path).map_err(|fault| refuse(path, fault, "name a file that can be read"))?;
-    Ok(BufReader::new(file))
-}
-
-fn decoder(path: &Path) -> Result<Decoder<BufReader<File>>, Error> {
-    Decoder::new(open(path)?).map_err(|fault| refuse(path, fault, KINDS))
+    let page = |page| ImageFile {
+        page,
+        ..first.clone()
+    };
+    Ok((0..count).map(page).collect())
 }
 
 fn check_size(width: u32, height: u32) -> Result<(), String> {
@@ -187,13 +196,26 @@ fn check_size(width: u32, height: u32) -> Result<(), String> {
 }
 
 impl ImageFile {
-    /// The image of a file, or of a page of a TIFF file.
+    /// The image of a file, or of a page of a TIFF file; a file that is given ([`with_files`](gelbench_base::document::with_files)) keeps its bytes.
     pub fn new(path: &Path, page: usize) -> Self {
         Self {
             path: path.to_owned(),
             page,
-            in_memory: None,
+            source: given(path).map_or(Source::Disk, |bytes| Source::Bytes(bytes.into())),
         }
+    }
+
+    fn open(&self) -> Result<Box<dyn Encoded>, Error> {
+        if let Source::Bytes(bytes) = &self.source {
+            return Ok(Box::new(Cursor::new(Arc::clone(bytes))));
+        }
+        let file = File::open(&self.path)
+            .map_err(|fault| refuse(&self.path, fault, "name a file that can be read"))?;
+        Ok(Box::new(BufReader::new(file)))
+    }
+
+    fn decoder(&self) -> Result<Decoder<Box<dyn Encoded>>, Error> {
+        Decoder::new(self.open()?).map_err(|fault| refuse(&self.path, fault, KINDS))
     }
 
     /// An image in memory, row by row from the top.
@@ -210,7 +232,7 @@ impl ImageFile {
             Error::input(format!("{name}: {fault}"), hint)
         })?;
         Ok(Self {
-            in_memory: Some(Arc::new(image)),
+            source: Source::Values(Arc::new(image)),
             ..Self::new(Path::new(name), 0)
         })
     }
@@ -220,12 +242,12 @@ impl ImageFile {
     /// # Errors
     /// [`Error::Input`] with the file, what is wrong and what to do. The size is checked before anything is decoded.
     pub fn read(&self) -> Result<GreyImage, Error> {
-        if let Some(image) = &self.in_memory {
+        if let Source::Values(image) = &self.source {
             return Ok((**image).clone());
         }
         let refuse = |fault: String| refuse(&self.path, fault, KINDS);
         if is_tiff(&self.path) {
-            let mut decoder = decoder(&self.path)?;
+            let mut decoder = self.decoder()?;
             for _ in 0..self.page {
                 decoder
                     .next_image()
@@ -233,8 +255,8 @@ impl ImageFile {
             }
             return of_tiff(decoder).map_err(refuse);
         }
-        drop(open(&self.path)?);
-        of_other(|| open(&self.path)).map_err(refuse)
+        drop(self.open()?);
+        of_other(|| self.open()).map_err(refuse)
     }
 
     /// The name of the file without its end, and the page of several.
@@ -257,11 +279,10 @@ impl ImageFile {
 /// What is wrong.
 pub fn of_bytes(bytes: &[u8]) -> Result<GreyImage, String> {
     if bytes.starts_with(b"II*\0") || bytes.starts_with(b"MM\0*") {
-        let decoder =
-            Decoder::new(std::io::Cursor::new(bytes)).map_err(|fault| fault.to_string())?;
+        let decoder = Decoder::new(Cursor::new(bytes)).map_err(|fault| fault.to_string())?;
         return of_tiff(decoder);
     }
-    of_other(|| Ok(std::io::Cursor::new(bytes.to_vec())))
+    of_other(|| Ok(Cursor::new(bytes)))
 }
 
 fn of_other<R: BufRead + Seek>(open: impl Fn() -> Result<R, Error>) -> Result<GreyImage, String> {

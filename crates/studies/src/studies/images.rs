@@ -45,13 +45,16 @@ pub struct ImageRequest<'a> {
     pub budget: Budget,
 }
 
+/// Images with the numbers of their frames.
+type NumberedFiles = Vec<(usize, ImageFile)>;
+
 /// Images that have been followed.
 #[derive(Clone, Debug)]
 pub struct TrackedImages {
     /// The first image's pattern.
     pub tracker: Tracker,
     /// The first image, and the later ones with the numbers of their frames.
-    pub files: (ImageFile, Vec<(usize, ImageFile)>),
+    pub files: (ImageFile, NumberedFiles),
     /// The points in each frame.
     pub frames: Vec<(usize, Vec<Option<Tracked>>)>,
     /// The same in mm.
@@ -91,18 +94,14 @@ impl ImageRequest<'_> {
             [] => list(self.files)?,
             images => images.to_vec(),
         };
-        let (first, others) = in_time(&files)?;
-        let last = others.last().unwrap_or(first);
+        let (first, numbered) = in_time(&files)?;
+        let last = numbered.last().map_or(first, |(_, last)| last);
         let image = first.read()?;
         self.afford(&image)?;
         let region = self.region(image.size(), pixel)?;
         let settings = self.settings.subsets;
         report("the first image");
         let mut tracker = Tracker::new(&image, &of_file(last, last.read())?, &region, settings)?;
-        let numbered: Vec<(usize, ImageFile)> = numbers(others)
-            .into_iter()
-            .zip(others.iter().cloned())
-            .collect();
         let (mut frames, mut patches) = (Vec::new(), Vec::new());
         let mut warnings = tracker.warnings().to_vec();
         for (number, file) in &numbered {
@@ -177,10 +176,16 @@ impl ImageRequest<'_> {
     }
 }
 
-/// The first image and the later ones.
-fn in_time(files: &[ImageFile]) -> Result<(&ImageFile, &[ImageFile]), Error> {
+/// The first image, and the later ones with the numbers of their frames.
+///
+/// # Errors
+/// [`Error::Input`] where there are fewer than two.
+pub fn in_time(files: &[ImageFile]) -> Result<(&ImageFile, NumberedFiles), Error> {
     match files {
-        [first, others @ ..] if !others.is_empty() => Ok((first, others)),
+        [first, others @ ..] if !others.is_empty() => {
+            let numbered = numbers(others).into_iter().zip(others.iter().cloned());
+            Ok((first, numbered.collect()))
+        }
         _ => {
             let names: Vec<String> = files
                 .iter()

@@ -1,6 +1,6 @@
 //! What a user says of a field, as the library is told it.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use gelbench::budget::Budget;
 use gelbench::error::Error;
@@ -8,6 +8,8 @@ use gelbench::markers::{ChosenColumns, ReadSettings};
 use gelbench::mesh::CellShape;
 use gelbench::studies::markers::{Conditions, MeshSource, Request};
 use gelbench::units::{Dimension, parse};
+use gelbench_images::images::{ImageFile, is_image_path};
+use gelbench_studies::studies::images::ImageSettings;
 
 use super::FieldQuestion;
 
@@ -39,6 +41,10 @@ pub(super) fn request(question: &FieldQuestion) -> Result<Request, Error> {
         let condition = edge.condition(name)?;
         edges.extend(condition.map(|condition| (name.clone(), condition)));
     }
+    let edge = |suits: fn(&Path) -> bool| {
+        let (name, _) = question.edge_file.as_ref()?;
+        suits(Path::new(name)).then(|| PathBuf::from(name))
+    };
     Ok(Request {
         files: question
             .files
@@ -51,10 +57,13 @@ pub(super) fn request(question: &FieldQuestion) -> Result<Request, Error> {
             downwards: question.downwards,
             ..ReadSettings::default()
         },
-        images: Default::default(),
+        images: ImageSettings {
+            mask: edge(is_image_path).map(|mask| ImageFile::new(&mask, 0)),
+            ..ImageSettings::default()
+        },
         material: question.card.reference(),
         thickness,
-        mesh: MeshSource::Data,
+        mesh: edge(|path| !is_image_path(path)).map_or(MeshSource::Data, MeshSource::Outline),
         cell_size: length("the size of cells", &question.cell_size)?,
         shape: CellShape::Triangle6,
         holes: true,
@@ -69,7 +78,7 @@ pub(super) fn request(question: &FieldQuestion) -> Result<Request, Error> {
 }
 
 /// A unit such as `mm`, or the length of a pixel such as `0.05 mm`.
-fn unit(text: &str) -> Result<Option<f64>, Error> {
+pub(super) fn unit(text: &str) -> Result<Option<f64>, Error> {
     let text = text.trim();
     let begins_with_number = text.starts_with(|first: char| first.is_ascii_digit() || first == '.');
     match text.is_empty() || begins_with_number {

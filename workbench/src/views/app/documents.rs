@@ -51,6 +51,10 @@ impl Workbench {
                 self.fields.put((plain(name), content.to_vec()));
                 self.tab = Tab::Field;
             }
+            (Kind::Edge, _) => {
+                self.fields.put_edge((plain(name), content.to_vec()));
+                self.tab = Tab::Field;
+            }
             (Kind::Sheet, Some(text)) => self.lay(name, text),
             (Kind::Study, Some(text)) => self.leave(Then::PutStudy(name.to_owned(), text)),
             (Kind::Named, _) => {

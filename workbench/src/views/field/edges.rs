@@ -47,7 +47,11 @@ impl Fields {
         let Drawing::Mesh(figure) = &preview.drawing else {
             return;
         };
-        let (view, area) = report::mesh(ui, figure);
+        let (view, area) = report::room(ui, figure.cells.iter().flatten());
+        if let Some(photo) = &preview.photo {
+            self.photographs.paint(ui, (view, area), None, photo);
+        }
+        report::mesh_in(ui, (view, area), figure);
         self.view = Some(view);
         let response = ui.interact(
             area.expand(6.0),

@@ -46,6 +46,12 @@ impl Fields {
             };
             ui.label(format!("force on {edge}: x {}, y {}", axis(x), axis(y)));
         }
+        if let Some((photo, Drawing::Mesh(figure))) = &frame.photo {
+            ui.label("the camera image, and the mesh as the corrected field moves it");
+            let room = report::room(ui, photo.corners.iter());
+            self.photographs.paint(ui, room, Some(self.frame), photo);
+            report::mesh_in(ui, room, figure);
+        }
         ui.horizontal_wrapped(|ui| {
             for (number, (name, _)) in frame.fields.iter().enumerate() {
                 ui.selectable_value(&mut self.field, number, name);
