@@ -17,6 +17,7 @@ mod golden;
 mod gross_errors;
 mod headlines;
 mod identify;
+mod image_fields;
 mod joint_parameters;
 mod keys;
 mod load_paths;
