@@ -117,20 +117,32 @@ fn a_run_goes_on_where_it_was_broken_off() {
     let complete = results(output);
     fs::remove_dir_all(output).unwrap();
     let kept = || first_partial(output).is_some_and(|partial| partial.join(".parts/0").exists());
-    // A run keeps nothing within its first two seconds: it sleeps through them.
+    // A run keeps nothing within its first two seconds: it sleeps through them. It sleeps again once it has kept something; on a busy machine
+    // it may have ended by then, and another one is started.
     let started = || {
-        let child = start(folder, command);
-        wait_for(|| partial(output));
-        send(&child, Signal::SIGSTOP);
-        thread::sleep(Duration::from_secs(2));
-        send(&child, Signal::SIGCONT);
-        wait_for(kept);
-        child
+        for _ in 0..10 {
+            let mut child = start(folder, command);
+            wait_for(|| partial(output));
+            send(&child, Signal::SIGSTOP);
+            thread::sleep(Duration::from_secs(2));
+            send(&child, Signal::SIGCONT);
+            wait_for(kept);
+            send(&child, Signal::SIGSTOP);
+            thread::sleep(Duration::from_millis(20));
+            if kept() && child.try_wait().unwrap().is_none() {
+                return child;
+            }
+            send(&child, Signal::SIGCONT);
+            child.wait().unwrap();
+            fs::remove_dir_all(output).unwrap();
+        }
+        panic!("every run ended before it was broken off");
     };
     for interrupt in [true, false] {
         let mut child = started();
         if interrupt {
             send(&child, Signal::SIGINT);
+            send(&child, Signal::SIGCONT);
             let ended = child.wait_with_output().unwrap();
             assert_ends(&ended, 130, "the same command continues from here");
         } else {

@@ -62,10 +62,9 @@ impl Layout {
             ..
         } = Choice::of(head, stated.as_ref().ok().copied())?;
         // Strains that are measured along two axes are those of a biaxial test, whatever its ratio.
-        let is_stated = !matches!(head.setting("test", None), Ok(None));
         let strains_across = of_kind(&roles, Kind::Strain).filter(|(_, role)| role.axis() == 1);
         let test = match strains_across.count() {
-            1 if !is_stated => Some(Test::Biaxial),
+            1 if matches!(head.setting("test", None), Ok(None)) => Some(Test::Biaxial),
             _ => faults.of(stated),
         };
         faults.0.extend(questions);
@@ -79,8 +78,8 @@ impl Layout {
         };
         faults.of(check_columns(head, &roles, test));
         let [turn_strain, turn_stress] = faults.of(flip(head, strain)).unwrap_or([1.0; 2]);
-        let strains =
-            strains.map(|scaled| scaled.map(|(column, factor)| (column, turn_strain * factor)));
+        let flipped = |(column, factor)| (column, turn_strain * factor);
+        let strains = strains.map(|along| along.map(flipped));
         let turned = |column: StressColumn| StressColumn {
             factor: turn_stress * column.factor,
             ..column
