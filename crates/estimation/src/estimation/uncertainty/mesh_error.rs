@@ -185,10 +185,16 @@ impl NearestField<'_> {
         let mut displacement = mesh.displacement_on(&self.field, &fine);
         let mut residual = vec![0.0; displacement.len()];
         let describe = |cell: usize| fine.describe_cell(cell);
-        // The coarser field is near, so that one factor serves for all steps.
         let solved = Newton::new(&pushed, &fixed).and_then(|mut newton| {
-            newton.tangent.at(&pushed, &displacement, &describe)?;
-            newton.solve_near(
+            // The coarser field is near, so that one factor serves for all steps where the tangent there is positive definite.
+            let begun = newton.tangent.at(&pushed, &displacement, &describe);
+            let method = if begun.is_ok() {
+                Newton::solve_near
+            } else {
+                Newton::solve
+            };
+            method(
+                &mut newton,
                 &pushed,
                 &mut displacement,
                 &mut residual,
