@@ -15,12 +15,20 @@ use gelbench::solve::NewtonSettings;
 use gelbench::studies::markers::{Conditions, MarkerStudy, MeshSource, Request};
 use gelbench_images::images::ImageFile;
 use gelbench_studies::studies::images::ImageSettings;
-use rand::{RngExt, SeedableRng};
+use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 use rayon::prelude::*;
 
 use crate::common::sheets::{STRIP_WITH_HOLE, held, named};
+use patterns::{speckle, weave};
+
+#[expect(
+    dead_code,
+    reason = "other patterns are those of the tests of tracking"
+)]
+#[path = "../../crates/images/src/images/tests/patterns.rs"]
+mod patterns;
 
 /// Pixels of a mm.
 const PIXELS: f64 = 4.0;
@@ -34,9 +42,6 @@ const MIDDLE: [f64; 2] = [56.0, 26.0];
 const RADIUS: f64 = 8.0;
 const SIZE: [f64; 2] = [100.0, 40.0];
 const C10: f64 = 0.05;
-
-/// Lightness at a material point in pixels.
-type Pattern = dyn Fn([f64; 2]) -> f64 + Sync;
 
 /// The strip in equilibrium, its right end pulled.
 struct Truth {
@@ -139,7 +144,7 @@ impl Truth {
 fn image(
     name: &str,
     seen: &[Option<[f64; 2]>],
-    pattern: &Pattern,
+    pattern: &(dyn Fn([f64; 2]) -> f64 + Sync),
     blur: usize,
     noise: f64,
 ) -> ImageFile {
@@ -186,59 +191,6 @@ fn blurred(rows: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let columns = rows[0].len();
     let row = |row: usize| (0..columns).map(|column| value(row, column)).collect();
     (0..rows.len()).map(row).collect()
-}
-
-/// Blobs of random places and sizes, about 4 pixels wide.
-fn speckle() -> Box<Pattern> {
-    const CELL: f64 = 5.0;
-    const COUNT: usize = 128;
-    let mut random = ChaCha8Rng::seed_from_u64(1);
-    let blobs: Vec<[f64; 4]> = (0..COUNT * COUNT)
-        .map(|_| {
-            let [x, y] = [0, 1].map(|_| random.random_range(0.0..CELL));
-            [
-                x,
-                y,
-                random.random_range(1.3..2.1),
-                random.random_range(0.4..1.0),
-            ]
-        })
-        .collect();
-    Box::new(move |[x, y]| {
-        let (column, row) = ((x / CELL).floor(), (y / CELL).floor());
-        let mut sum = 0.0;
-        for (i, j) in (-2..=2).flat_map(|j| (-2..=2).map(move |i| (f64::from(i), f64::from(j)))) {
-            let wrap = |at: f64| at.rem_euclid(COUNT as f64) as usize;
-            let [a, b, size, light] = blobs[wrap(row + j) * COUNT + wrap(column + i)];
-            let (dx, dy) = (x - (column + i) * CELL - a, y - (row + j) * CELL - b);
-            sum += light * (-(dx * dx + dy * dy) / (2.0 * size * size)).exp();
-        }
-        0.1 + 0.75 * sum.min(1.6) / 1.6
-    })
-}
-
-/// Threads 7 pixels apart over and under each other, each of a lightness of its own that varies along it.
-fn weave() -> Box<Pattern> {
-    const APART: f64 = 7.0;
-    let mut random = ChaCha8Rng::seed_from_u64(2);
-    let threads: Vec<[f64; 3]> = (0..2048)
-        .map(|_| {
-            [0.4, 40.0, 0.0]
-                .map(|least: f64| least + (1.0 - 0.5 * least.min(1.0)) * random.random::<f64>())
-        })
-        .collect();
-    Box::new(move |[x, y]| {
-        let thread = |across: f64, along: f64, first: usize| {
-            let number = (across / APART).floor();
-            let [light, length, phase] = threads[first + number as usize % 1024];
-            let round = (std::f64::consts::PI * across / APART).sin().abs();
-            let varied = 1.0 + 0.3 * (TAU * (along / length + phase)).sin();
-            light * varied * (0.3 + 0.7 * round)
-        };
-        let over = (TAU * x / (2.0 * APART)).sin() * (TAU * y / (2.0 * APART)).sin();
-        let share = 0.5 + 0.5 * (3.0 * over).tanh();
-        0.75 * (share * thread(x, y, 0) + (1.0 - share) * thread(y, x, 1024))
-    })
 }
 
 /// The edge of the strip in the image, with the hole as a polygon of its area.
@@ -331,10 +283,10 @@ fn error(study: &MarkerStudy, estimate: &FieldEstimate, truth: &Truth) -> f64 {
 fn images_of_a_strip_with_a_hole_lead_to_its_field_and_force() {
     let folder = tempfile::tempdir().unwrap();
     for (name, pattern, pull, blur, noise, least_covered) in [
-        ("much noise", speckle(), 20.0, 0, 0.1, 0.9),
-        ("blur", speckle(), 10.0, 3, 0.02, 0.9),
-        ("far", speckle(), 60.0, 0, 0.02, 0.9),
-        ("weave", weave(), 10.0, 0, 0.02, 0.7),
+        ("much noise", speckle(1), 20.0, 0, 0.1, 0.9),
+        ("blur", speckle(1), 10.0, 3, 0.02, 0.9),
+        ("far", speckle(1), 60.0, 0, 0.02, 0.9),
+        ("weave", weave(2), 10.0, 0, 0.02, 0.7),
     ] {
         let truth = Truth::pulled(pull);
         let rest = image("rest", &truth.seen(false), &*pattern, blur, noise);
@@ -363,7 +315,7 @@ fn images_of_a_strip_with_a_hole_lead_to_its_field_and_force() {
 fn images_refute_a_wrong_law() {
     let folder = tempfile::tempdir().unwrap();
     let truth = Truth::pulled(30.0);
-    let pattern = speckle();
+    let pattern = speckle(1);
     let images = [("rest", false), ("pulled", true)]
         .map(|(name, pulled)| image(name, &truth.seen(pulled), &*pattern, 0, 0.05));
     let softer = "law = \"mooney-rivlin\"\n[parameters]\nc10 = \"0 MPa\"\nc01 = \"0.05 MPa\"\n";

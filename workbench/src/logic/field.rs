@@ -247,6 +247,7 @@ impl FieldQuestion {
             .chain(names)
             .collect();
         let card = self.card.reference();
+        let edge = self.mask_and_outline().map(Option::unwrap_or_default);
         let mut question = self.clone();
         // The gap is in the file of what is known.
         question.edge_gap.clear();
@@ -254,7 +255,7 @@ impl FieldQuestion {
         let options = [(settings::MATERIAL.option, card.as_str())]
             .into_iter()
             .chain(texts.map(|(setting, text)| (setting.option, text.as_str())))
-            .chain(self.edge_option())
+            .chain(["--mask", "--outline"].into_iter().zip(edge))
             .chain([("--study", KNOWN)]);
         for (option, value) in options {
             if !value.trim().is_empty() {

@@ -107,8 +107,7 @@ impl Fields {
 
     /// Looks at the files; one image alone waits for the next.
     fn look(&mut self) {
-        let waits = self.question.has_images() && self.question.files.len() < 2;
-        if !waits && !self.question.files.is_empty() {
+        if !self.question.waits_for_images() && !self.question.files.is_empty() {
             self.ask(false);
         }
     }
@@ -298,7 +297,7 @@ impl Fields {
             (self.answer, self.seen) = (None, None);
             self.look();
         }
-        if self.question.has_images() && self.question.files.len() < 2 {
+        if self.question.waits_for_images() {
             ui.label("This is the specimen at rest: drop an image under load beside it.");
         }
         let edge_name = self.question.edge_file.as_ref().map(|(name, _)| name);

@@ -88,6 +88,15 @@ fn open(edges: &[Edge]) -> Vec<usize> {
     open
 }
 
+/// The edges with some of them free.
+fn freed(given: &[Edge], open: &[usize]) -> Vec<Edge> {
+    let mut edges = given.to_vec();
+    for index in open {
+        edges[*index].condition = EdgeCondition::Free;
+    }
+    edges
+}
+
 /// The nearest field with all edges to be tested free, where no edge that is loaded instead, in one linearised step, makes the misfit smaller
 /// than noise would. Gross errors could hide what such an edge does.
 fn all_free<'a>(task: &Task<'a>, given: &[Edge]) -> Option<(NearestField<'a>, Vec<Edge>)> {
@@ -95,10 +104,7 @@ fn all_free<'a>(task: &Task<'a>, given: &[Edge]) -> Option<(NearestField<'a>, Ve
     if open.is_empty() || task.knowledge.robust != Robust::No {
         return None;
     }
-    let mut edges = given.to_vec();
-    for index in &open {
-        edges[*index].condition = EdgeCondition::Free;
-    }
+    let mut edges = freed(given, &open);
     let free = nearest(task, &edges, MOST_STEPS).ok()?;
     if free.ends_at_gross_errors(&free.markers()) {
         return None;
@@ -155,12 +161,9 @@ fn from_free<'a>(
     task: &Task<'a>,
     given: Vec<Edge>,
 ) -> Result<(NearestField<'a>, Vec<Edge>), Error> {
-    let mut edges = given.clone();
-    let open = open(&edges);
+    let open = open(&given);
+    let mut edges = freed(&given, &open);
     let level = LEVEL / open.len() as f64;
-    for index in &open {
-        edges[*index].condition = EdgeCondition::Free;
-    }
     let mut nearest_field = nearest(task, &edges, MOST_STEPS)?;
     for index in open {
         let mut released = edges.clone();

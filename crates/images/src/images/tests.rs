@@ -1,9 +1,12 @@
 use nalgebra::{Matrix2, Vector2};
 
+#[expect(dead_code, reason = "a weave is for the tests of corrected images")]
+mod patterns;
 mod render;
 
 use super::*;
-use render::{Camera, Pattern, natural, speckle, tags};
+use patterns::{Pattern, natural, speckle, tags};
+use render::Camera;
 
 /// A homogeneous deformation x = m + F (X − m) + t about the middle of an image.
 struct Homogeneous {

@@ -28,7 +28,7 @@ impl Photo {
     /// Each pixel is the mean of a square of pixels; the darkest thousandth is black, and the brightest white.
     fn of(image: &GreyImage, pixel: f64) -> Self {
         let [width, height] = image.size();
-        let side = width.max(height).div_ceil(LONGEST);
+        let side = width.max(height).div_ceil(LONGEST).min(width).min(height);
         let size = [width / side, height / side];
         let mean = |number: usize| {
             let [x, y] = [number % size[0], number / size[0]].map(|position| side * position);
@@ -118,15 +118,16 @@ impl FieldQuestion {
         files.any(|(name, _)| is_image_path(Path::new(name)))
     }
 
-    /// The option of the command for the specimen's edge.
-    pub(super) fn edge_option(&self) -> Option<(&'static str, &str)> {
-        let (name, _) = self.edge_file.as_ref()?;
-        let option = if is_image_path(Path::new(name)) {
-            "--mask"
-        } else {
-            "--outline"
-        };
-        Some((option, name))
+    /// Whether an image under load is missing beside the one at rest.
+    pub fn waits_for_images(&self) -> bool {
+        self.has_images() && self.files.len() < 2
+    }
+
+    /// The specimen's edge, where it is known: an image of its region, or a table of lines.
+    pub(super) fn mask_and_outline(&self) -> [Option<&str>; 2] {
+        let name = self.edge_file.as_ref().map(|(name, _)| name.as_str());
+        let is_mask = name.is_some_and(|name| is_image_path(Path::new(name)));
+        [name.filter(|_| is_mask), name.filter(|_| !is_mask)]
     }
 }
 
@@ -145,6 +146,8 @@ mod tests {
         assert_eq!(photo.size, [500, 300]);
         assert_eq!((photo.values[0], photo.values[499]), (255, 0));
         assert_eq!((photo.values[149 * 500], photo.values[150 * 500]), (255, 0));
+        let narrow = Photo::of(&GreyImage::of(9000, 8, |_, _| 7.0), 0.1);
+        assert_eq!(narrow.size, [1125, 1]);
         for (corner, expected) in photo
             .corners
             .iter()

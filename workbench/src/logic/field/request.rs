@@ -8,7 +8,7 @@ use gelbench::markers::{ChosenColumns, ReadSettings};
 use gelbench::mesh::CellShape;
 use gelbench::studies::markers::{Conditions, MeshSource, Request};
 use gelbench::units::{Dimension, parse};
-use gelbench_images::images::{ImageFile, is_image_path};
+use gelbench_images::images::ImageFile;
 use gelbench_studies::studies::images::ImageSettings;
 
 use super::FieldQuestion;
@@ -41,10 +41,7 @@ pub(super) fn request(question: &FieldQuestion) -> Result<Request, Error> {
         let condition = edge.condition(name)?;
         edges.extend(condition.map(|condition| (name.clone(), condition)));
     }
-    let edge = |suits: fn(&Path) -> bool| {
-        let (name, _) = question.edge_file.as_ref()?;
-        suits(Path::new(name)).then(|| PathBuf::from(name))
-    };
+    let [mask, outline] = question.mask_and_outline();
     Ok(Request {
         files: question
             .files
@@ -58,12 +55,12 @@ pub(super) fn request(question: &FieldQuestion) -> Result<Request, Error> {
             ..ReadSettings::default()
         },
         images: ImageSettings {
-            mask: edge(is_image_path).map(|mask| ImageFile::new(&mask, 0)),
+            mask: mask.map(|mask| ImageFile::new(Path::new(mask), 0)),
             ..ImageSettings::default()
         },
         material: question.card.reference(),
         thickness,
-        mesh: edge(|path| !is_image_path(path)).map_or(MeshSource::Data, MeshSource::Outline),
+        mesh: outline.map_or(MeshSource::Data, |lines| MeshSource::Outline(lines.into())),
         cell_size: length("the size of cells", &question.cell_size)?,
         shape: CellShape::Triangle6,
         holes: true,
