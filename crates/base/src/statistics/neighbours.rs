@@ -3,6 +3,7 @@
 use rand::SeedableRng;
 use rand::seq::SliceRandom;
 use rand_chacha::ChaCha8Rng;
+use rayon::prelude::*;
 use rstar::RTree;
 use rstar::primitives::GeomWithData;
 
@@ -10,45 +11,64 @@ type Site = GeomWithData<[f64; 2], usize>;
 
 /// The `count` nearest other places of each place, the nearest first; of equally near ones those with the smaller number.
 pub fn nearest(positions: &[[f64; 2]], count: usize) -> Vec<Vec<usize>> {
-    let sites = positions.iter().enumerate();
-    let tree = RTree::bulk_load(
-        sites
-            .map(|(index, position)| Site::new(*position, index))
-            .collect(),
-    );
-    let others = |index: usize| {
-        let others = around(&tree, positions[index], count + 1).into_iter();
-        others.filter(|other| *other != index).take(count).collect()
-    };
-    (0..positions.len()).map(others).collect()
+    let tree = tree(positions, 0..positions.len());
+    let indices = (0..positions.len()).into_par_iter();
+    indices
+        .map(|index| around(&tree, positions[index], count, |other| other != index))
+        .collect()
 }
 
 /// All places in a random but reproducible order, each with the `count` nearest of those before it.
 pub fn nearest_before(positions: &[[f64; 2]], count: usize) -> Vec<(usize, Vec<usize>)> {
+    const FIRST: usize = 32;
     let mut order: Vec<usize> = (0..positions.len()).collect();
     order.shuffle(&mut ChaCha8Rng::seed_from_u64(1));
-    let mut tree = RTree::new();
-    let visit = |index: usize| {
-        let before = around(&tree, positions[index], count);
-        tree.insert(Site::new(positions[index], index));
-        (index, before)
-    };
-    order.into_iter().map(visit).collect()
+    let mut ranks = vec![0; positions.len()];
+    for (rank, index) in order.iter().enumerate() {
+        ranks[*index] = rank;
+    }
+    let mut all = Vec::with_capacity(order.len());
+    // Of the places in a tree, at least one half come before one that is asked for.
+    while all.len() < order.len() {
+        let end = (2 * all.len()).max(FIRST).min(order.len());
+        let tree = tree(positions, order[..end].iter().copied());
+        let before = |index: &usize| {
+            let is_before = |other: usize| ranks[other] < ranks[*index];
+            (*index, around(&tree, positions[*index], count, is_before))
+        };
+        all.par_extend(order[all.len()..end].par_iter().map(before));
+    }
+    all
 }
 
-/// The nearest of a tree, those that are as far as the last one only by their numbers.
-fn around(tree: &RTree<Site>, position: [f64; 2], count: usize) -> Vec<usize> {
+fn tree(positions: &[[f64; 2]], chosen: impl Iterator<Item = usize>) -> RTree<Site> {
+    RTree::bulk_load(
+        chosen
+            .map(|index| Site::new(positions[index], index))
+            .collect(),
+    )
+}
+
+/// The nearest of a tree that are admitted, those that are as far as the last one only by their numbers.
+fn around(
+    tree: &RTree<Site>,
+    position: [f64; 2],
+    count: usize,
+    admits: impl Fn(usize) -> bool,
+) -> Vec<usize> {
     const EQUAL: f64 = 1e-9;
-    let mut result: Vec<(f64, usize)> = Vec::new();
+    let mut result: Vec<(f64, usize)> = Vec::with_capacity(count + 1);
     for (site, square) in tree.nearest_neighbor_iter_with_distance_2(&position) {
         let last = result.len().checked_sub(1).map(|last| result[last].0);
         if result.len() >= count && last.is_some_and(|last| square > last * (1.0 + EQUAL)) {
             break;
         }
-        result.push((square, site.data));
+        if admits(site.data) {
+            result.push((square, site.data));
+        }
     }
-    let rounded = |square: f64| (square.max(f64::MIN_POSITIVE).ln() / EQUAL.sqrt()).round();
-    result.sort_by(|a, b| rounded(a.0).total_cmp(&rounded(b.0)).then(a.1.cmp(&b.1)));
+    let rounded = |square: f64| (square.max(f64::MIN_POSITIVE).ln() / EQUAL.sqrt()).round() as i64;
+    result.sort_by_cached_key(|(square, index)| (rounded(*square), *index));
     result.truncate(count);
     result.into_iter().map(|(_, index)| index).collect()
 }
