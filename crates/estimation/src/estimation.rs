@@ -105,7 +105,7 @@ fn estimate_with(
             knowledge,
         };
         let (nearest, edges) = free_edges::search(&task, edges.clone())?;
-        let markers = nearest.markers();
+        let markers = nearest.markers(None);
         if nearest.ends_at_gross_errors(&markers) {
             let ended = FieldEstimate {
                 markers,

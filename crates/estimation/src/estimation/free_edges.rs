@@ -57,7 +57,7 @@ fn decided<'a>(task: &Task<'a>, edges: Vec<Edge>) -> Result<(NearestField<'a>, V
         return Ok(confirmed);
     }
     match nearest(task, &edges, MOST_STEPS) {
-        Ok(field) if field.ends_at_gross_errors(&field.markers()) => Ok((field, edges)),
+        Ok(field) if field.ends_at_gross_errors(&field.markers(None)) => Ok((field, edges)),
         Ok(field) => from_loaded(task, field, edges),
         Err(fault) => from_free(task, edges).map_err(|_| fault),
     }
@@ -106,7 +106,7 @@ fn all_free<'a>(task: &Task<'a>, given: &[Edge]) -> Option<(NearestField<'a>, Ve
     }
     let mut edges = freed(given, &open);
     let free = nearest(task, &edges, MOST_STEPS).ok()?;
-    if free.ends_at_gross_errors(&free.markers()) {
+    if free.ends_at_gross_errors(&free.markers(None)) {
         return None;
     }
     let level = LEVEL / open.len() as f64;
@@ -115,7 +115,8 @@ fn all_free<'a>(task: &Task<'a>, given: &[Edge]) -> Option<(NearestField<'a>, Ve
         loaded[index].condition = given[index].condition;
         let scored = Equations::new(task, &loaded).ok()?;
         let scored = scored.score_released(&free).ok()?;
-        let probability = probability((&scored.fit, &scored.variances), &free);
+        let loaded = (&scored.fit, &scored.variances);
+        let probability = probability(loaded, &free, (&edges, level));
         edges[index].probability = Some(probability);
         if probability < level {
             return None;
@@ -144,9 +145,9 @@ fn from_loaded<'a>(
         }
         // Where no equilibrium with the free edge is found, the edge is not free.
         let trial = nearest_from(task, &freed, TRIAL_STEPS, &nearest_field);
-        let probability = trial
-            .as_ref()
-            .map_or(0.0, |trial| probability(nearest_field.fitted(), trial));
+        let probability = trial.as_ref().map_or(0.0, |trial| {
+            probability(nearest_field.fitted(), trial, (&freed, level))
+        });
         edges[index].probability = Some(probability);
         if let (Ok(trial), true) = (trial, probability >= level) {
             edges[index].condition = EdgeCondition::Free;
@@ -171,7 +172,7 @@ fn from_free<'a>(
         let Ok(trial) = nearest_from(task, &released, TRIAL_STEPS, &nearest_field) else {
             continue;
         };
-        let probability = probability(trial.fitted(), &nearest_field);
+        let probability = probability(trial.fitted(), &nearest_field, (&edges, level));
         if probability < level {
             (edges, nearest_field) = (released, trial);
         }
@@ -200,16 +201,28 @@ fn settle<'a>(
     }
 }
 
-/// The probability that noise alone increases the misfit by so much when a free edge is taken as free.
-fn probability((loaded, variances): (&Fit, &VarianceComponents), free: &NearestField) -> f64 {
+/// The probability that noise alone increases the misfit by so much when a free edge is taken as free; where that is below a level, that noise
+/// and the mesh's own error do.
+fn probability(
+    (loaded, variances): (&Fit, &VarianceComponents),
+    free: &NearestField,
+    (edges, level): (&[Edge], f64),
+) -> f64 {
     let count = loaded.residual.len() as f64;
     let more = (loaded.effective - free.fit.effective).max(1.0);
     let rest = (count - loaded.effective).max(1.0);
     let misfit = |fit: &Fit| free.misfit(fit, variances);
     let (before, after) = (misfit(loaded), misfit(&free.fit));
     let noise = before.max(free.rounding(variances)).max(f64::MIN_POSITIVE);
-    let ratio = (after - before).max(0.0) / more / (noise / rest);
-    f_tail([more, rest], ratio)
+    let of_misfit = |after: f64| {
+        let ratio = (after - before).max(0.0) / more / (noise / rest);
+        f_tail([more, rest], ratio)
+    };
+    let probability = of_misfit(after);
+    if probability >= level {
+        return probability;
+    }
+    of_misfit(after - free.misfit_of_mesh(edges, variances))
 }
 
 impl NearestField<'_> {

@@ -75,11 +75,11 @@ pub fn judge(
     let Some(rows) = Rows::new(nearest_field, &sound, mesh_error) else {
         return Ok(Judgement::default());
     };
-    let granted = nearest_field.granted(edges)?;
+    let granted = nearest_field.granted(edges, mesh_error)?;
     let base = Model::of_search(&rows, nearest_field).granting(&rows, &granted);
     let mut noises = base.noises(&rows);
     let noise = noises.first();
-    let columns = nearest_field.alternatives(mesh_error)?;
+    let columns = nearest_field.alternatives()?;
     let all =
         all.map(|scored| Model::of_score(&rows, nearest_field, &scored).granting(&rows, &granted));
     let basis = Basis {

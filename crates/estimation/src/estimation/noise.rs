@@ -114,8 +114,8 @@ impl NearestField<'_> {
         if residual <= ROUNDING * size(&|row| observations.displacements[row / 2][row % 2]) {
             return true;
         }
-        let difference = self.mesh_difference(edges);
-        difference.is_some_and(|difference| size(&|row| difference.markers[row]) > MUCH * residual)
+        let mesh_error = self.mesh_error(edges);
+        mesh_error.is_some_and(|error| size(&|row| error.markers[row]) > MUCH * residual)
     }
 
     /// The variation of the markers' noise from place to place; outliers count too, except those that no noise explains.

@@ -12,7 +12,7 @@ use super::outcome::{
 };
 use super::regression::Robust;
 use super::search::NearestField;
-use super::uncertainty::MeshError;
+use super::uncertainty::{MESH_ERRORS, MeshError};
 use crate::error::{Error, SolveFault};
 use crate::finite_element::recovery::Recovery;
 use crate::material::sheet::{Kinematics, PlaneTensor};
@@ -24,10 +24,11 @@ const FALSE_ALARMS: f64 = 1e-3;
 impl NearestField<'_> {
     /// The field with all results that follow from it.
     pub fn into_estimate(mut self, edges: &[Edge]) -> Result<FieldEstimate, Error> {
-        let mesh_error = self.mesh_error(edges);
+        self.mesh_error(edges);
+        let mesh_error = self.refined.take().flatten();
         let mesh_error = mesh_error.as_ref();
         let judged = judge(&mut self, edges, mesh_error)?;
-        let markers = self.markers();
+        let markers = self.markers(mesh_error);
         let known_noise = self.observations().known_noise;
         let robust = self.equations.task.knowledge.robust;
         let begun = self.take_uncertainty(edges, mesh_error, &judged)?;
@@ -238,26 +239,30 @@ impl NearestField<'_> {
             && MarkerEstimate::scatter_by_median(markers) < MarkerEstimate::GROSS_ERRORS
     }
 
-    pub(super) fn markers(&self) -> Vec<Option<MarkerEstimate>> {
+    pub(super) fn markers(&self, mesh_error: Option<&MeshError>) -> Vec<Option<MarkerEstimate>> {
         let observations = self.observations();
         let limit = chi_squared_limit(2.0, FALSE_ALARMS);
         let mut all = vec![None; observations.markers];
         for (row, index) in observations.chosen.iter().enumerate() {
-            all[*index] = Some(self.marker(row, limit));
+            let mesh_error = mesh_error.map_or([0.0; 2], |error| {
+                [0, 1].map(|axis| MESH_ERRORS * error.markers[2 * row + axis])
+            });
+            all[*index] = Some(self.marker(row, mesh_error, limit));
         }
         all
     }
 
-    /// Cov(r) = v/w + (1 − 2ω) A M⁻¹ Aᵀ: a marker with trust has drawn the field to it, one without has not.
-    fn marker(&self, index: usize, limit: f64) -> MarkerEstimate {
+    /// Cov(r) = v/w + (2 e)² + (1 − 2ω) A M⁻¹ Aᵀ: a marker with trust has drawn the field to it, one without has not.
+    fn marker(&self, index: usize, mesh_error: [f64; 2], limit: f64) -> MarkerEstimate {
         let residuals = &self.fit.residual;
         let residual = Vector2::new(residuals[2 * index], residuals[2 * index + 1]);
         let rows = self.linear.design.rows(2 * index, 2);
         let spread: DMatrix<f64> = rows * &self.fit.covariance * rows.transpose();
         let trust = self.variances.trust[index];
         let weights = &self.observations().weights;
-        let variances =
-            Vector2::from_fn(|axis, _| self.variances.sound / weights[2 * index + axis]);
+        let variances = Vector2::from_fn(|axis, _| {
+            self.variances.sound / weights[2 * index + axis] + mesh_error[axis].powi(2)
+        });
         let covariance = Matrix2::from_diagonal(&variances)
             + (1.0 - 2.0 * trust) * spread.fixed_view::<2, 2>(0, 0);
         let solved = covariance

@@ -1,10 +1,13 @@
 //! The search for the equilibrium nearest to the data.
 
+use std::sync::OnceLock;
+
 use nalgebra::DMatrix;
 
 use super::equations::{AT_THE_END, Equations, Linear, ON_THE_WAY, SearchState, solve};
 use super::input::Observations;
 use super::regression::{Fit, Regression, Undetermined, VarianceComponents};
+use super::uncertainty::MeshError;
 use crate::error::{Error, SolveFault};
 use crate::solve::vector::largest;
 
@@ -36,6 +39,8 @@ pub struct NearestField<'a> {
     /// ζ of node after node.
     pub multipliers: Vec<f64>,
     pub steps: usize,
+    /// The mesh's own error, once it was needed.
+    pub refined: OnceLock<Option<MeshError>>,
 }
 
 /// One linearised regression.
@@ -100,6 +105,7 @@ impl<'a> Equations<'a> {
                     fit,
                     variances,
                     steps,
+                    refined: OnceLock::new(),
                     equations: self,
                 });
             }

@@ -8,6 +8,6 @@ mod picture_scale;
 mod smoothing_bias;
 mod unknown_places;
 
-pub use mesh_error::{MOST_REFINED_CELLS, MeshDifference, MeshError};
+pub use mesh_error::{MESH_ERRORS, MOST_REFINED_CELLS, MeshDifference, MeshError};
 pub use moved_edges::MovedEdge;
 pub use picture_scale::ScaleChange;

@@ -105,7 +105,7 @@ impl<'a> Frame<'a> {
                 knowledge: &knowledge,
             };
             let (nearest, edges) = free_edges::search(&task, first.clone())?;
-            let other = nearest.other_noise(&nearest.markers(), &edges);
+            let other = nearest.other_noise(&nearest.markers(None), &edges);
             Ok((edges, other))
         };
         let (edges, _) = with_observed_noise(&mut observations, search)?;

@@ -13,7 +13,7 @@ use crate::estimation::equations::nodal_areas;
 use crate::estimation::input::Edge;
 use crate::estimation::outcome::Alternative;
 use crate::estimation::search::NearestField;
-use crate::estimation::uncertainty::MeshError;
+use crate::estimation::uncertainty::{MESH_ERRORS, MeshError};
 use crate::material::sheet::{Kinematics, PlaneTensor, cofactor};
 use crate::material::{HyperelasticLaw, MooneyRivlin, NeoHooke, Yeoh};
 
@@ -32,11 +32,8 @@ pub struct Granted {
 }
 
 impl NearestField<'_> {
-    /// The alternatives of forces, stiffness, law, picture and mesh, with all edges as they are.
-    pub(super) fn alternatives(
-        &mut self,
-        mesh_error: Option<&MeshError>,
-    ) -> Result<Vec<Column>, Error> {
+    /// The alternatives of forces, stiffness, law and picture, with all edges as they are.
+    pub(super) fn alternatives(&mut self) -> Result<Vec<Column>, Error> {
         let mut all = Vec::new();
         if self.equations.body.is_none() {
             all.push((Alternative::BodyForce, self.smooth_forces()));
@@ -52,16 +49,16 @@ impl NearestField<'_> {
         if self.equations.task.knowledge.scale_deviation == 0.0 {
             columns.push((Alternative::Scale, self.magnification()));
         }
-        if let Some(mesh_error) = mesh_error {
-            let error =
-                DMatrix::from_column_slice(mesh_error.markers.len(), 1, &mesh_error.markers);
-            columns.push((Alternative::Mesh, error));
-        }
         Ok(columns)
     }
 
-    /// The changes that what is known admits: a picture of another scale, and free edges up to the gap away from those of the mesh.
-    pub(super) fn granted(&mut self, edges: &[Edge]) -> Result<Vec<Granted>, Error> {
+    /// The changes that what is known admits: a picture of another scale, the mesh's own error, and free edges up to the gap away from those of
+    /// the mesh.
+    pub(super) fn granted(
+        &mut self,
+        edges: &[Edge],
+        mesh_error: Option<&MeshError>,
+    ) -> Result<Vec<Granted>, Error> {
         let knowledge = self.equations.task.knowledge;
         let stated = knowledge.scale_deviation > 0.0;
         let scale = stated.then(|| Granted {
@@ -69,6 +66,10 @@ impl NearestField<'_> {
             deviation: None,
         });
         let mut all: Vec<Granted> = scale.into_iter().collect();
+        all.extend(mesh_error.map(|error| Granted {
+            design: DMatrix::from_column_slice(error.markers.len(), 1, &error.markers),
+            deviation: Some(MESH_ERRORS),
+        }));
         let (strips, squares) = self.unknown_places(edges);
         if !strips.is_empty() {
             let designs = self.marker_changes(&strips)?;

@@ -4,7 +4,7 @@ use nalgebra::DMatrix;
 
 use crate::estimation::regression::{Fit, VarianceComponents, squares};
 use crate::estimation::search::NearestField;
-use crate::estimation::uncertainty::MeshError;
+use crate::estimation::uncertainty::{MESH_ERRORS, MeshError};
 use crate::statistics::{Sites, chi_squared_limit, extremes, nearest};
 
 /// Fewer markers carry no information on each other.
@@ -57,7 +57,7 @@ impl Rows {
             };
             [0, 1].map(|axis| {
                 let row = 2 * marker + axis;
-                let mesh = mesh_error.map_or(0.0, |error| 2.0 * error.markers[row]);
+                let mesh = mesh_error.map_or(0.0, |error| MESH_ERRORS * error.markers[row]);
                 let weight = observations.weights[row] * trust / nearest_field.variances.sound;
                 weight.sqrt().recip().hypot(mesh).recip()
             })

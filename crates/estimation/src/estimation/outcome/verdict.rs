@@ -65,12 +65,6 @@ impl Verdict {
         let gross = |reason: &Reason| matches!(reason, Reason::GrossErrors(_));
         self.answer != Answer::NotExplained && !self.reasons.iter().any(gross)
     }
-
-    /// Whether data are not explained because cells are too coarse for them: a finer mesh explains more than any other alternative.
-    pub fn asks_for_finer_mesh(&self) -> bool {
-        let first = self.trials.first().map(|trial| &trial.alternative);
-        self.answer == Answer::NotExplained && first == Some(&Alternative::Mesh)
-    }
 }
 
 /// The correlation of noise with distance.
@@ -173,8 +167,6 @@ pub enum Alternative {
     Volume,
     /// A picture of another scale.
     Scale,
-    /// A finer mesh.
-    Mesh,
     /// Stiffness times thickness, by a factor.
     Factor(f64),
 }
@@ -223,7 +215,6 @@ impl Alternative {
                 "a picture of another scale (a specimen nearer to or farther from its camera)"
                     .into()
             }
-            Self::Mesh => "a finer mesh".into(),
             Self::Factor(factor) => {
                 format!("stiffness times thickness multiplied by {factor:.3}")
             }

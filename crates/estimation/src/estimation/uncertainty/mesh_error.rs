@@ -27,6 +27,9 @@ use crate::problem::sheet_energy::SheetEnergy;
 use crate::solve::vector::dot;
 use crate::solve::{Newton, NewtonSettings, Sum};
 
+/// The mesh's own error is at most about so many times the difference that cells half as large make.
+pub const MESH_ERRORS: f64 = 2.0;
+
 /// Meshes with more cells are not refined.
 pub const MOST_REFINED_CELLS: usize = 25_000;
 
@@ -117,8 +120,29 @@ impl NearestField<'_> {
         })
     }
 
-    /// The mesh's own error, where the difference is known.
-    pub fn mesh_error(&self, edges: &[Edge]) -> Option<MeshError> {
+    /// The mesh's own error, where the difference is known; it is computed once.
+    pub fn mesh_error(&self, edges: &[Edge]) -> Option<&MeshError> {
+        let refined = self.refined.get_or_init(|| self.compute_mesh_error(edges));
+        refined.as_ref()
+    }
+
+    /// The part of a fit's misfit Σ w ω r² that the mesh's own error may make, with one factor for all markers.
+    pub fn misfit_of_mesh(&self, edges: &[Edge], variances: &VarianceComponents) -> f64 {
+        let Some(error) = self.mesh_error(edges) else {
+            return 0.0;
+        };
+        let weights = &self.observations().weights;
+        let rows = error.markers.iter().zip(&self.fit.residual).enumerate();
+        let (mut product, mut square) = (0.0, variances.variance / MESH_ERRORS.powi(2));
+        for (row, (error, residual)) in rows {
+            let weighted = variances.weight(weights, row) * error;
+            product += weighted * residual;
+            square += weighted * error;
+        }
+        product * product / square
+    }
+
+    fn compute_mesh_error(&self, edges: &[Edge]) -> Option<MeshError> {
         let mesh = self.equations.task.specimen.mesh;
         let difference = self.mesh_difference(edges)?;
         let target = self

@@ -12,8 +12,8 @@ const COARSE: f64 = 0.05;
 
 impl MarkerStudy {
     /// Reads everything but the material, as [`Self::prepare_with`], and halves the cells until, in the frame that moves most, the mesh's
-    /// own error is the larger part of the error of stress on 5 % of the area at most, and is not why the data are not explained. Where that
-    /// would take more cells than can be refined, a warning says how far it came.
+    /// own error is the larger part of the error of stress on 5 % of the area at most. Where that would take more cells than can be refined, a
+    /// warning says how far it came.
     ///
     /// # Errors
     /// As [`Self::prepare`] and [`Self::estimate_frame`]; [`Error::Input`] where the mesh is not made inside an outline.
@@ -33,8 +33,7 @@ impl MarkerStudy {
             watch(&format!("cells of {} mm", decimals(size, 4)));
             let estimate = study.estimate_frame(most_moved(&study)?)?;
             let share = estimate.coarse_share(&study.mesh);
-            let asked = estimate.verdict.asks_for_finer_mesh();
-            if share <= COARSE && !asked {
+            if share <= COARSE {
                 return Ok(study);
             }
             request.cell_size = Some(0.5 * size);
@@ -48,16 +47,11 @@ impl MarkerStudy {
             match finer {
                 Ok(finer) => study = finer,
                 Err(reason) => {
-                    let coarse = if asked {
-                        "the data are still not explained on these cells, and smaller ones would improve the fit".to_owned()
-                    } else {
-                        format!(
-                            "on {:.0} % of the area, the mesh's discretisation error is still the larger part of the stress error",
-                            100.0 * share
-                        )
-                    };
-                    let warning = Diagnostic::warning("", format!("{coarse}: {reason}"));
-                    study.warnings.push(warning);
+                    let coarse = format!(
+                        "on {:.0} % of the area, the mesh's discretisation error is still the larger part of the stress error: {reason}",
+                        100.0 * share
+                    );
+                    study.warnings.push(Diagnostic::warning("", coarse));
                     return Ok(study);
                 }
             }

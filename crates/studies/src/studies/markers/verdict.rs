@@ -68,13 +68,12 @@ pub fn lines(study: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<String> {
     let trials = &estimate.verdict.trials;
     if trials.is_empty() {
         let words = if estimate.holds_mesh_error {
-            "no alternative tried (edges, forces, stiffness, law, finer mesh) improves the fit"
+            "no alternative tried (edges, forces, stiffness, law) improves the fit"
         } else {
-            "no alternative tried (edges, forces, stiffness, law) improves the fit; a finer mesh could not be tried: use smaller cells"
+            "no alternative tried (edges, forces, stiffness, law) improves the fit; the mesh's discretisation error could not be estimated: use fewer cells"
         };
         lines.push(words.to_owned());
     }
-    lines.extend(finer_mesh(study, &estimate.verdict));
     let residual_rms = estimate.verdict.residual_rms.filter(|_| !trials.is_empty());
     lines.extend(residual_rms.map(|residual_rms| {
         format!(
@@ -124,17 +123,6 @@ fn run_words(run: &[(usize, &Verdict)], answer: Answer) -> String {
         (Answer::Correlated, false) => format!("{numbers} (over {low:.3} mm)"),
         _ => numbers,
     }
-}
-
-/// The remedy where the cells are why data are not explained.
-fn finer_mesh(study: &MarkerStudy, verdict: &Verdict) -> Option<String> {
-    let size = study.cell_size.map(|size| decimals(size, 4));
-    let remedy = size.map_or("use a finer one".to_owned(), |size| {
-        format!("use cells smaller than {size} mm (--refine or --cell-size)")
-    });
-    verdict.asks_for_finer_mesh().then(|| {
-        format!("the mesh is too coarse for data of this precision, which is no evidence against the law and the conditions: {remedy}")
-    })
 }
 
 /// The reasons of a verdict in words.
@@ -233,7 +221,6 @@ pub fn blocks(study: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> {
             .column("residual without outliers [mm]", |[_, rms, _]| rms.clone())
             .column("probability", |[.., probability]| probability.clone());
         blocks.push(table.block());
-        blocks.extend(finer_mesh(study, &estimate.verdict).map(Block::paragraph));
     }
     blocks
 }
