@@ -125,12 +125,11 @@ pub struct Options {
     /// The array of a VTK or Gmsh file
     #[arg(long, value_name = "NAME")]
     pub array: Option<String>,
-    /// Size of the cells of a generated mesh [default: the markers' spacing, at least 12 cells across and at most
-    /// about 20,000]
+    /// Size of the cells of a generated mesh [default: nodes as far apart as the markers, at least 16 cells across,
+    /// about 5,000 at most, and more only where less would not go across]
     #[arg(long, value_name = "LENGTH", value_parser = size, allow_hyphen_values = true)]
     pub cell_size: Option<f64>,
-    /// Halve the cells of a generated mesh until its discretisation error is a small part of the stress intervals, and no longer the reason why
-    /// data are not explained
+    /// Halve the cells of a generated mesh until its discretisation error is a small part of the stress intervals
     #[arg(long, conflicts_with_all = ["together", "specimen", "laws"])]
     pub refine: bool,
     /// Kind of the cells of a generated mesh: triangles or quadrilaterals, by their number of nodes

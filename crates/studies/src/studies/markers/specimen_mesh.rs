@@ -11,6 +11,9 @@ use crate::markers::{MarkerFiles, MarkerSeries, read_lines};
 use crate::mesh::{CellShape, Exemptions, Mesh, Outline, import};
 use crate::units::decimals;
 
+/// A mesh that is made has no more cells than this where so many go across, however dense the markers are, if no size is given.
+const ENOUGH_CELLS: f64 = 5_000.0;
+
 /// A mesh that is made has at most about so many cells, if no size is given.
 const MOST_CELLS: f64 = 20_000.0;
 
@@ -19,7 +22,7 @@ const MOST_CELLS: f64 = 20_000.0;
 const BYTES_OF_AN_UNKNOWN: f64 = 12_000.0;
 
 /// A mesh that is made has at least about so many cells across the specimen, if no size is given.
-const LEAST_ACROSS: f64 = 12.0;
+const LEAST_ACROSS: f64 = 16.0;
 
 /// A mesh and what it was made from.
 pub(super) struct SpecimenMesh {
@@ -222,8 +225,8 @@ fn positions(series: &MarkerSeries, gaps_are_holes: bool) -> (Vec<[f64; 2]>, usi
     (places.into_iter().chain(lost).collect(), in_gaps)
 }
 
-/// A mesh inside an outline, and the size of its cells in mm. Without a wish its cells are as long as the markers' spacing, but at least 12 go across
-/// the specimen and at most about 20,000 are made.
+/// A mesh inside an outline, and the size of its cells in mm. Without a wish its nodes are as far apart as the markers, but at least 16 cells go
+/// across the specimen, and about 5,000 are made at most, or 20,000 where less would not go across.
 fn mesh_inside(
     request: &Request,
     outline: &Outline,
@@ -235,9 +238,12 @@ fn mesh_inside(
     let smallest = |cells: f64| (outline.area() / (cells * cell_area)).sqrt();
     let [along_x, along_y] = outline.extents();
     let across = along_x.min(along_y);
-    let size = request
-        .cell_size
-        .unwrap_or(spacing.min(across / LEAST_ACROSS).max(smallest(MOST_CELLS)));
+    let size = request.cell_size.unwrap_or(
+        (request.shape.degree() as f64 * spacing)
+            .max(smallest(ENOUGH_CELLS))
+            .min(across / LEAST_ACROSS)
+            .max(smallest(MOST_CELLS)),
+    );
     if size > across / 2.0 {
         let message = format!(
             "cells of {size} mm are too large for a specimen {} mm wide",
