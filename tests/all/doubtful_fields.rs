@@ -315,12 +315,16 @@ fn cells_become_smaller_until_their_own_error_is_a_small_part_of_the_intervals()
         let frame = &report["steps"][0]["corrected"];
         number(frame, &["mesh_error_dominates_area_percent"])
     };
-    let (_, before) = corrected(&text, &coarse, NOT_EXPLAINED);
+    let width = |report: &Value| {
+        let [_, low, high] = right_force(report);
+        assert!(low < FORCE && FORCE < high, "{low} … {high}");
+        high - low
+    };
+    let (_, before) = corrected(&text, &coarse, 0);
     assert!(share(&before) > 20.0, "{}", share(&before));
     let (_, after) = corrected(&text, &[&coarse[..], &["--refine"]].concat(), 0);
     assert!(share(&after) <= 5.0, "{}", share(&after));
-    let [_, low, high] = right_force(&after);
-    assert!(low < FORCE && FORCE < high, "{low} … {high}");
+    assert!(width(&after) < width(&before));
 }
 
 #[test]

@@ -34,6 +34,7 @@ mod free_edges;
 mod input;
 mod joint;
 mod judge;
+mod mesh_error;
 mod noise;
 mod outcome;
 mod regression;

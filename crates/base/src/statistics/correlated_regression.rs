@@ -16,7 +16,7 @@ use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use super::correlation::{Correlation, Decay, Sites, Whitening};
-use super::{chi_squared_limit, inverse_of};
+use super::{chi_squared_limit, inverse_of, normal_equations};
 
 /// A regression whose rows would have variance one if they were white; two rows for each place.
 pub struct CorrelatedRegression<'a> {
@@ -80,10 +80,10 @@ impl WhiteRegression {
     }
 
     fn of_rows(design: &DMatrix<f64>, residual: &DVector<f64>, log_determinant: f64) -> Self {
-        let transposed = design.transpose();
+        let (normal, right) = normal_equations(design, residual, |_| 1.0);
         Self {
-            normal: &transposed * design,
-            right: transposed * residual,
+            normal,
+            right,
             square: residual.norm_squared(),
             rows: residual.len() as f64,
             log_determinant,

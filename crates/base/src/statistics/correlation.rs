@@ -13,7 +13,10 @@
 //! A. V. Vecchia, J. R. Stat. Soc. B 50, 297 (1988), doi:10.1111/j.2517-6161.1988.tb01729.x;
 //! J. Guinness, Technometrics 60, 415 (2018), doi:10.1080/00401706.2018.1437476
 
+use std::sync::OnceLock;
+
 use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
 
 use super::neighbours::nearest_before;
 
@@ -79,16 +82,21 @@ fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
 #[derive(Clone, Debug)]
 pub struct Sites {
     positions: Vec<[f64; 2]>,
-    order: Vec<(usize, Vec<usize>)>,
+    order: OnceLock<Vec<(usize, Vec<usize>)>>,
 }
 
 impl Sites {
-    /// The order of places.
+    /// These places; their order is made where noise correlates.
     pub fn new(positions: Vec<[f64; 2]>) -> Self {
         Self {
-            order: nearest_before(&positions, NEIGHBOURS),
             positions,
+            order: OnceLock::new(),
         }
+    }
+
+    fn order(&self) -> &[(usize, Vec<usize>)] {
+        let order = || nearest_before(&self.positions, NEIGHBOURS);
+        self.order.get_or_init(order)
     }
 
     /// The places.
@@ -142,7 +150,7 @@ impl Whitening {
             }
         };
         Self {
-            rows: sites.order.iter().map(row).collect(),
+            rows: sites.order().par_iter().map(row).collect(),
         }
     }
 

@@ -93,7 +93,8 @@ impl Unevenness {
         if sizes.is_none() && ratios.is_none() && ratio.is_none() {
             return None;
         }
-        let sites = sites(positions, &places, information.margin)?;
+        let around = nearest(positions, AROUND);
+        let sites = sites(positions, &around, &places, information.margin)?;
         let nothing = [0.0; TERMS];
         let sizes = at(&sizes.unwrap_or(nothing), &sites);
         // The mean of the ratios is that of their logarithms, where it is any.
@@ -148,7 +149,7 @@ impl Information {
         let around = nearest(positions, FAR);
         let differences = differences(&around, z)?;
         let margin = correlation(&around, z) < CORRELATED;
-        let all = sites(positions, positions, true)?;
+        let all = sites(positions, &around, positions, true)?;
         let is_inside = |index: &usize| all[*index][OUT[0]].max(all[*index][OUT[1]]) < MARGIN;
         let chosen = (0..positions.len()).filter(|index| margin || is_inside(index));
         let chosen: Vec<usize> = chosen.collect();
@@ -166,7 +167,11 @@ impl Information {
                 .iter()
                 .map(|index| with_margin(all[*index], margin))
                 .collect(),
-            around: nearest(&places, FAR),
+            around: if places.len() == positions.len() {
+                around
+            } else {
+                nearest(&places, FAR)
+            },
             squares: [0, 1].map(squares),
         })
     }
@@ -254,19 +259,23 @@ fn bounded(logarithms: Vec<f64>) -> Vec<f64> {
 }
 
 /// q of places, relative to those that are sound; `None` where it is not a number.
-fn sites(positions: &[[f64; 2]], sound: &[[f64; 2]], margin: bool) -> Option<Vec<[f64; TERMS]>> {
+fn sites(
+    positions: &[[f64; 2]],
+    around: &[Vec<usize>],
+    sound: &[[f64; 2]],
+    margin: bool,
+) -> Option<Vec<[f64; TERMS]>> {
     let sides = [0, 1].map(|axis| extremes(sound.iter().map(|position| position[axis])));
-    let around = nearest(positions, AROUND).into_iter().enumerate();
-    let of_place = |(index, others): (usize, Vec<usize>)| {
-        let position = positions[index];
+    let of_place = |(position, others): (&[f64; 2], &Vec<usize>)| {
         let [x, y] = [0, 1].map(|axis| {
             let [low, high] = sides[axis];
             share(2.0 * position[axis] - low - high, high - low)
         });
-        let [out_x, out_y] = out_of_the_middle(positions, position, &others);
+        let others = &others[..others.len().min(AROUND)];
+        let [out_x, out_y] = out_of_the_middle(positions, *position, others);
         with_margin([x, y, out_x, out_y, x * x, x * y, y * y], margin)
     };
-    let all: Vec<_> = around.map(of_place).collect();
+    let all: Vec<_> = positions.iter().zip(around).map(of_place).collect();
     all.iter()
         .flatten()
         .all(|term| term.is_finite())

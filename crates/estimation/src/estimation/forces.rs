@@ -3,9 +3,10 @@
 use super::edges::Body;
 use super::equations::Grip;
 use super::input::Edge;
+use super::mesh_error::MeshError;
 use super::outcome::{EdgeForce, ForceCheck, FoundParameter};
 use super::search::NearestField;
-use super::uncertainty::{MeshError, ScaleChange};
+use super::uncertainty::ScaleChange;
 use crate::error::Error;
 use crate::material::parameters::Parameter;
 use crate::material::sheet::{Kinematics, PlaneTensor};

@@ -7,11 +7,12 @@
 
 use super::equations::Equations;
 use super::input::{Edge, EdgeCondition};
+use super::mesh_error::MeshError;
 use super::outcome::{
     Alternative, Answer, Contradiction, ForceCheck, NoiseCorrelation, Reason, Trial, Verdict, Worst,
 };
 use super::search::{NearestField, Scored};
-use super::uncertainty::{MeshError, MovedEdge};
+use super::uncertainty::MovedEdge;
 use crate::error::Error;
 use crate::statistics::{CorrelatedNoise, nearest, normal_tail};
 
@@ -81,23 +82,17 @@ pub fn judge(
     let noise = noises.first();
     let columns = nearest_field.alternatives()?;
     let all =
-        all.map(|scored| Model::of_score(&rows, nearest_field, &scored).granting(&rows, &granted));
+        all.map(|scored| Model::of_score(&rows, nearest_field, scored).granting(&rows, &granted));
     let basis = Basis {
         reference: Reference::new(&rows, noise, &base, all.as_ref(), &columns),
         rows: &rows,
         base: &base,
     };
-    let trials = columns.iter().map(|(alternative, design)| {
-        basis.try_out(
-            nearest_field,
-            alternative.clone(),
-            &base.with(&rows, [design]),
-        )
+    let trials = columns.into_iter().map(|(alternative, design)| {
+        basis.try_out(nearest_field, alternative, &base.with(&rows, [&design]))
     });
     let mut trials: Vec<Trial> = trials.collect();
-    let together = all
-        .as_ref()
-        .map(|model| basis.try_out(nearest_field, Alternative::Edges, model));
+    let together = all.map(|model| basis.try_out(nearest_field, Alternative::Edges, &model));
     let correlation = noise.map(|noise| rows.correlation(noise));
     let few = few(correlation, nearest_field);
     let level = if few.is_some() { STRICT } else { LEVEL };
@@ -199,7 +194,7 @@ impl Basis<'_> {
         let trials = names.filter_map(|name| {
             let scored = released(nearest_field, edges, &|other| other == name)?;
             let model =
-                Model::of_score(self.rows, nearest_field, &scored).granting(self.rows, granted);
+                Model::of_score(self.rows, nearest_field, scored).granting(self.rows, granted);
             Some(self.try_out(nearest_field, Alternative::Edge(name.to_owned()), &model))
         });
         trials.collect()
@@ -216,7 +211,7 @@ impl Basis<'_> {
         let trials = OTHER_CONDITIONS.into_iter().filter_map(|condition| {
             let scored = with_condition(nearest_field, edges, condition, &|other| other == name)?;
             let model =
-                Model::of_score(self.rows, nearest_field, &scored).granting(self.rows, granted);
+                Model::of_score(self.rows, nearest_field, scored).granting(self.rows, granted);
             let edge = name.to_owned();
             let alternative = Alternative::Condition { edge, condition };
             Some(self.try_out(nearest_field, alternative, &model))

@@ -6,8 +6,8 @@ use nalgebra::DMatrix;
 
 use super::equations::{AT_THE_END, Equations, Linear, ON_THE_WAY, SearchState, solve};
 use super::input::Observations;
+use super::mesh_error::MeshError;
 use super::regression::{Fit, Regression, Undetermined, VarianceComponents};
-use super::uncertainty::MeshError;
 use crate::error::{Error, SolveFault};
 use crate::solve::vector::largest;
 

@@ -2,12 +2,12 @@
 //! not seen, smoothness.
 
 mod considered;
-mod mesh_error;
 mod moved_edges;
 mod picture_scale;
+mod refined_mesh;
 mod smoothing_bias;
 mod unknown_places;
 
-pub use mesh_error::{MESH_ERRORS, MOST_REFINED_CELLS, MeshDifference, MeshError};
 pub use moved_edges::MovedEdge;
 pub use picture_scale::ScaleChange;
+pub use refined_mesh::{MOST_REFINED_CELLS, MeshDifference};

@@ -283,7 +283,7 @@ impl<'a> Frame<'a> {
             .0
             .tr_mul(&DVector::from_vec(gain.collect()));
         let magnified = equations.magnified(&state.field);
-        let magnified = equations.target_of(&magnified, &linear, &variances);
+        let magnified = equations.target_of(&magnified, &linear.design, &variances);
         Ok(LawEquations {
             reduced: Reduced::new(&normal, of_law)?,
             normal,

@@ -11,9 +11,9 @@ use nalgebra::DMatrix;
 use crate::error::Error;
 use crate::estimation::equations::nodal_areas;
 use crate::estimation::input::Edge;
+use crate::estimation::mesh_error::{MESH_ERRORS, MeshError};
 use crate::estimation::outcome::Alternative;
 use crate::estimation::search::NearestField;
-use crate::estimation::uncertainty::{MESH_ERRORS, MeshError};
 use crate::material::sheet::{Kinematics, PlaneTensor, cofactor};
 use crate::material::{HyperelasticLaw, MooneyRivlin, NeoHooke, Yeoh};
 

@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::alternatives::{Column, Granted};
 use super::rows::Rows;
-use crate::estimation::equations::{Equations, Linear};
+use crate::estimation::equations::Equations;
 use crate::estimation::outcome::{Alternative, Trial};
 use crate::estimation::regression::{Fit, VarianceComponents};
 use crate::estimation::search::{NearestField, Scored};
@@ -16,6 +16,7 @@ use crate::statistics::{
 const EVIDENCE: f64 = 12.0;
 
 /// A linear model of the sound markers.
+#[derive(Clone)]
 pub struct Model {
     design: DMatrix<f64>,
     residual: DVector<f64>,
@@ -56,57 +57,56 @@ impl Model {
     fn new(
         rows: &Rows,
         equations: &Equations,
-        linear: &Linear,
+        design: DMatrix<f64>,
         fit: &Fit,
         variances: &VarianceComponents,
     ) -> Self {
         let residual = DMatrix::from_columns(std::slice::from_ref(&fit.residual));
         Self {
-            design: rows.scaled(&linear.design),
-            residual: rows.scaled(&residual).column(0).into_owned(),
-            held: fit.held.clone(),
             // At the best fit the slope of the penalties is that of the data: −AᵀWr/v.
-            slope: equations.target_of(fit.residual.as_slice(), linear, variances),
+            slope: equations.target_of(fit.residual.as_slice(), &design, variances),
+            design: rows.scaled(design),
+            residual: rows.scaled(residual).column(0).into_owned(),
+            held: fit.held.clone(),
         }
     }
 
     /// That of a search.
     pub fn of_search(rows: &Rows, nearest_field: &NearestField) -> Self {
-        let (linear, fit, variances) = (
-            &nearest_field.linear,
-            &nearest_field.fit,
-            &nearest_field.variances,
-        );
-        Self::new(rows, &nearest_field.equations, linear, fit, variances)
+        let (fit, variances) = (&nearest_field.fit, &nearest_field.variances);
+        let design = nearest_field.linear.design.clone();
+        Self::new(rows, &nearest_field.equations, design, fit, variances)
     }
 
     /// That of one regression with other conditions.
-    pub fn of_score(rows: &Rows, nearest_field: &NearestField, scored: &Scored) -> Self {
-        let (linear, fit, variances) = (&scored.linear, &scored.fit, &scored.variances);
-        Self::new(rows, &nearest_field.equations, linear, fit, variances)
+    pub fn of_score(rows: &Rows, nearest_field: &NearestField, scored: Scored) -> Self {
+        let (fit, variances) = (&scored.fit, &scored.variances);
+        let design = scored.linear.design;
+        Self::new(rows, &nearest_field.equations, design, fit, variances)
     }
 
     /// The model with further columns without penalty.
     pub fn with<'a>(&self, rows: &Rows, more: impl IntoIterator<Item = &'a DMatrix<f64>>) -> Self {
-        self.extended(rows, more.into_iter().map(|design| (design, None)))
+        let more = more.into_iter().map(|design| (design, None));
+        self.clone().extended(rows, more)
     }
 
     /// The model with changes that are known to be possible.
-    pub fn granting(&self, rows: &Rows, granted: &[Granted]) -> Self {
+    pub fn granting(self, rows: &Rows, granted: &[Granted]) -> Self {
         let more = granted.iter();
         self.extended(rows, more.map(|change| (&change.design, change.deviation)))
     }
 
     /// The model with further columns, each of unit mean square, and the standard deviations of their parameters where known.
     fn extended<'a>(
-        &self,
+        self,
         rows: &Rows,
         more: impl Iterator<Item = (&'a DMatrix<f64>, Option<f64>)>,
     ) -> Self {
         let mut columns: Vec<DVector<f64>> = Vec::new();
         let mut information: Vec<f64> = Vec::new();
         for (design, deviation) in more {
-            let scaled = rows.scaled(design);
+            let scaled = rows.scaled(design.clone());
             for column in scaled.column_iter() {
                 let length = column.norm();
                 if length > 0.0 && length.is_finite() {
@@ -119,17 +119,17 @@ impl Model {
             }
         }
         let (before, all) = (self.design.ncols(), self.design.ncols() + columns.len());
-        let mut design = self.design.clone().resize_horizontally(all, 0.0);
-        let mut held = self.held.clone().resize(all, all, 0.0);
+        let mut design = self.design.resize_horizontally(all, 0.0);
+        let mut held = self.held.resize(all, all, 0.0);
         for (index, (column, information)) in columns.iter().zip(information).enumerate() {
             design.set_column(before + index, column);
             held[(before + index, before + index)] = information;
         }
         Self {
             design,
-            residual: self.residual.clone(),
+            residual: self.residual,
             held,
-            slope: self.slope.clone().resize_vertically(all, 0.0),
+            slope: self.slope.resize_vertically(all, 0.0),
         }
     }
 
@@ -191,7 +191,7 @@ impl Reference {
                 .regression(&model)
                 .best(&model.held, &model.slope, remaining.variance)?;
         // Columns are added with a length of their own.
-        let scaled = rows.scaled(design);
+        let scaled = rows.scaled(design.clone());
         Some(best[last] * model.design.column(last).norm() / scaled.norm())
     }
 

@@ -2,9 +2,9 @@
 
 use nalgebra::DMatrix;
 
+use crate::estimation::mesh_error::{MESH_ERRORS, MeshError};
 use crate::estimation::regression::{Fit, VarianceComponents, squares};
 use crate::estimation::search::NearestField;
-use crate::estimation::uncertainty::{MESH_ERRORS, MeshError};
 use crate::statistics::{Sites, chi_squared_limit, extremes, nearest};
 
 /// Fewer markers carry no information on each other.
@@ -105,10 +105,19 @@ impl Rows {
     }
 
     /// Rows of these markers out of a matrix with two rows for each marker on the mesh, over the noise.
-    pub fn scaled(&self, design: &DMatrix<f64>) -> DMatrix<f64> {
-        DMatrix::from_fn(2 * self.chosen.len(), design.ncols(), |row, column| {
-            self.scales[row] * design[(2 * self.chosen[row / 2] + row % 2, column)]
-        })
+    pub fn scaled(&self, design: DMatrix<f64>) -> DMatrix<f64> {
+        let (before, columns) = design.shape();
+        let rows = 2 * self.chosen.len();
+        let mut values: Vec<f64> = design.data.into();
+        // In ascending order no value is written over before it is read.
+        for column in 0..columns {
+            for (row, scale) in self.scales.iter().enumerate() {
+                let source = column * before + 2 * self.chosen[row / 2] + row % 2;
+                values[column * rows + row] = scale * values[source];
+            }
+        }
+        values.truncate(rows * columns);
+        DMatrix::from_vec(rows, columns, values)
     }
 }
 

@@ -1,9 +1,9 @@
 //! The derivatives of the markers over their noise, and their products with the noise that was found.
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 use super::penalised::VarianceComponents;
-use crate::statistics::{CorrelatedNoise, Sites, Whitening};
+use crate::statistics::{CorrelatedNoise, Sites, Whitening, normal_equations};
 
 /// The derivatives of the markers, two rows each, with their weights.
 pub struct MarkerRows<'a> {
@@ -15,8 +15,12 @@ pub struct MarkerRows<'a> {
 impl MarkerRows<'_> {
     /// ÃᵀÃ, Ã = √(W/v) A.
     pub fn information(&self) -> DMatrix<f64> {
-        let scaled = self.scaled();
-        scaled.tr_mul(&scaled)
+        let none = DVector::zeros(self.design.nrows());
+        normal_equations(self.design, &none, |row| self.weight(row)).0
+    }
+
+    fn weight(&self, row: usize) -> f64 {
+        self.variances.weight(self.weights, row) / self.variances.variance
     }
 
     /// τ² ÃᵀRÃ.
@@ -31,12 +35,8 @@ impl MarkerRows<'_> {
 
     /// Ã.
     fn scaled(&self) -> DMatrix<f64> {
-        let scale = |row: usize| {
-            let weight = self.variances.weight(self.weights, row);
-            (weight / self.variances.variance).sqrt()
-        };
         DMatrix::from_fn(self.design.nrows(), self.design.ncols(), |row, column| {
-            scale(row) * self.design[(row, column)]
+            self.weight(row).sqrt() * self.design[(row, column)]
         })
     }
 }

@@ -21,7 +21,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::robust::Robust;
-use crate::statistics::inverse;
+use crate::statistics::{inverse, normal_equations};
 
 /// The curvature of the displacement of one edge along one axis: Σ r² = ∫ (d²u/dt²)² dt with t = 0…1 along the edge.
 #[derive(Clone, Debug)]
@@ -159,15 +159,9 @@ impl Regression<'_> {
 
     /// AᵀWA and AᵀWr.
     fn normal(&self, variances: &VarianceComponents) -> (DMatrix<f64>, DVector<f64>) {
-        let mut weighted = self.design.clone();
-        let weights = DVector::from_fn(weighted.nrows(), |row, _| {
+        normal_equations(self.design, &self.residual, |row| {
             variances.weight(self.weights, row)
-        });
-        for mut column in weighted.column_iter_mut() {
-            column.component_mul_assign(&weights);
-        }
-        let weighted = weighted.transpose();
-        (&weighted * self.design, weighted * &self.residual)
+        })
     }
 
     /// λ with which each prior has the weight of the data.

@@ -76,7 +76,7 @@ impl NearestField<'_> {
         let observations = self.observations();
         let at_markers = observations.interpolation.multiply(change);
         let equations = &self.equations;
-        let mut target = equations.target_of(&at_markers, &self.linear, &self.variances);
+        let mut target = equations.target_of(&at_markers, &self.linear.design, &self.variances);
         let measured = equations.task.knowledge.measured_forces().iter();
         for (row, measured) in measured.enumerate() {
             let grip = equations.grip_of_edge(measured, &self.field)?;

@@ -52,7 +52,7 @@ impl NearestField<'_> {
         let column = self.equations.magnified(&self.field);
         let target = self
             .equations
-            .target_of(&column, &self.linear, &self.variances);
+            .target_of(&column, &self.linear.design, &self.variances);
         -(&self.fit.covariance * target)
     }
 

@@ -13,12 +13,13 @@
 
 use std::collections::BTreeSet;
 
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use crate::estimation::edges::Body;
 use crate::estimation::equations::{BodyForce, Equations, Linear};
 use crate::estimation::input::{Edge, EdgeCondition};
+use crate::estimation::mesh_error::{MESH_ERRORS, MeshError};
 use crate::estimation::regression::VarianceComponents;
 use crate::estimation::search::NearestField;
 use crate::mesh::Mesh;
@@ -27,9 +28,6 @@ use crate::problem::sheet_energy::SheetEnergy;
 use crate::solve::vector::dot;
 use crate::solve::{Newton, NewtonSettings, Sum};
 
-/// The mesh's own error is at most about so many times the difference that cells half as large make.
-pub const MESH_ERRORS: f64 = 2.0;
-
 /// Meshes with more cells are not refined.
 pub const MOST_REFINED_CELLS: usize = 25_000;
 
@@ -37,21 +35,6 @@ const SETTINGS: NewtonSettings = NewtonSettings {
     tolerance: 1e-8,
     max_iterations: 20,
 };
-
-/// The mesh's own error.
-#[derive(Clone, Debug)]
-pub struct MeshError {
-    /// e of node after node in mm.
-    pub displacement: Vec<f64>,
-    /// δp.
-    pub parameters: DVector<f64>,
-    /// H e, two numbers per marker.
-    pub markers: Vec<f64>,
-    /// G₁₁, G₁₂, G₂₁, G₂₂ of cell after cell.
-    pub gradients: Vec<[f64; 4]>,
-    /// The error of the force of each body in N, in the order of the bodies.
-    pub forces: Vec<[f64; 2]>,
-}
 
 /// The difference of the refined mesh's solution at the same motion of the edges.
 pub struct MeshDifference {
@@ -271,7 +254,7 @@ impl Equations<'_> {
         linear: &Linear,
         variances: &VarianceComponents,
     ) -> DVector<f64> {
-        let mut target = self.target_of(&difference.markers, linear, variances);
+        let mut target = self.target_of(&difference.markers, &linear.design, variances);
         let measured = self.task.knowledge.measured_forces().iter().enumerate();
         for (row, measured) in measured {
             let bodies = self.bodies.iter().zip(&difference.forces);
@@ -287,7 +270,7 @@ impl Equations<'_> {
     pub fn target_of(
         &self,
         displacements: &[f64],
-        linear: &Linear,
+        design: &DMatrix<f64>,
         variances: &VarianceComponents,
     ) -> DVector<f64> {
         let weights = &self.task.observations.weights;
@@ -295,7 +278,7 @@ impl Equations<'_> {
         let weighted =
             weighted.map(|(row, d)| -variances.weight(weights, row) * d / variances.variance);
         let weighted = DVector::from_iterator(displacements.len(), weighted);
-        linear.design.tr_mul(&weighted)
+        design.tr_mul(&weighted)
     }
 }
 
