@@ -1,4 +1,5 @@
-//! What people wait for: `cargo bench --bench waiting` runs the commands as they are typed, and shows the least of three times.
+//! What people wait for: `cargo bench --bench waiting` runs the commands as they are typed, and shows the least of three times, or the
+//! first where it is long.
 //!
 //! With `GELBENCH_BEFORE=PROGRAM`, one built from an earlier commit, both programs run each command in turn. With a word behind `--`, as in
 //! `cargo bench --bench waiting -- markers`, only the commands whose name has it are run. Markers are those of a strip with a hole from finite
@@ -31,6 +32,9 @@ const NOISE: f64 = 0.003;
 /// The number of frames.
 const FRAMES: usize = 10;
 
+/// Seconds from which on a command is run once.
+const LONG: f64 = 30.0;
+
 /// Radius of the hole in mm.
 const RADIUS: f64 = 8.0;
 
@@ -38,7 +42,7 @@ const CORRECT: &str =
     "--material neo-hooke --thickness 2mm --outline outline.csv --rigid left,right";
 
 /// The commands in words, and what is typed behind `gelbench`. Each word is one argument; `_` stands for a blank in it.
-const COMMANDS: [[&str; 2]; 13] = [
+const COMMANDS: [[&str; 2]; 14] = [
     ["main job", "run examples/pva_plate.toml"],
     ["strip with a hole", "run examples/strip_with_hole.toml"],
     ["dog-bone", "run examples/dog_bone.toml"],
@@ -73,6 +77,10 @@ const COMMANDS: [[&str; 2]; 13] = [
         "100,000 markers",
         "correct 100000.csv CORRECT --allow-large",
     ],
+    [
+        "1,000,000 markers",
+        "correct 1000000.csv CORRECT --allow-large",
+    ],
 ];
 
 /// The strip with a hole in equilibrium, on its way to the last load factor.
@@ -91,7 +99,7 @@ impl Truth {
             supports: named([("left", held(0.0, 0.0)), ("right", held(40.0, 0.0))]),
             loads: Vec::new(),
         };
-        let mesh = STRIP_WITH_HOLE.mesh(32, CellShape::Quad9);
+        let mesh = STRIP_WITH_HOLE.mesh(96, CellShape::Quad9);
         let energy = problem.finite_elements(&mesh);
         let model = problem.on(&mesh, &energy).expect("a problem");
         let factors: Vec<f64> = (1..=FRAMES)
@@ -192,6 +200,7 @@ fn main() {
         ("gross.csv", 3_400, 1, 60),
         ("frames.csv", 5_000, FRAMES, 0),
         ("100000.csv", 100_000, 1, 0),
+        ("1000000.csv", 1_000_000, 1, 0),
     ] {
         truth.write(&at(name), count, frames, gross);
     }
@@ -225,7 +234,10 @@ fn main() {
         let mut arguments: Vec<String> = typed.split(' ').map(&argument).collect();
         arguments.extend(["--output".to_owned(), at("out").display().to_string()]);
         let mut least = vec![f64::INFINITY; programs.len()];
-        for _ in 0..3 {
+        for round in 0..3 {
+            if round > 0 && least.iter().any(|least| *least > LONG) {
+                break;
+            }
             for (least, program) in least.iter_mut().zip(&programs) {
                 *least = least.min(seconds(program, &arguments));
             }
