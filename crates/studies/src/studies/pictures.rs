@@ -1,6 +1,7 @@
 //! What a study says of its pictures.
 
 use super::ModelKind;
+use super::sections::read_models;
 use crate::document::{Bound, Section};
 use crate::results::{Palette, PictureFormat, PictureStyle, PictureWidth, SheetField, ShownFields};
 use crate::units::Dimension;
@@ -52,7 +53,6 @@ impl Pictures {
     /// none where any will do.
     pub fn read(section: &Section, key: &'static str, dimension: Dimension, path: &[f64]) -> Self {
         let fields = read_fields(section);
-        let models = section.choices("models", &ModelKind::NAMES);
         let shown = read_shown(section, key, dimension, path);
         let formats = section.choices("formats", &PictureFormat::NAMES);
         if formats.as_ref().is_some_and(Vec::is_empty) {
@@ -71,7 +71,7 @@ impl Pictures {
         section.unknown_keys();
         Self {
             fields,
-            models: models.unwrap_or_default(),
+            models: read_models(section),
             shown,
             style,
         }

@@ -121,7 +121,7 @@ const NAMES: &ColumnNames<(Kind, Option<&str>, Naming)> = &[
     ),
     (
         (Kind::Strain, None, Naming::Usual),
-        "strain epsilon eps ε shear_strain amount_of_shear gamma γ",
+        "strain epsilon eps ε shear_strain amount_of_shear shear gamma γ",
     ),
     (
         (Kind::Strain, Some("nominal"), Naming::Usual),
