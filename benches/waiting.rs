@@ -225,7 +225,7 @@ fn main() {
         ""
     };
     println!("| command |{before} now [s] |");
-    println!("|---|---{}|", before.replace(" before [s] ", "---"));
+    println!("|---|---|{}", before.replace(" before [s] ", "---"));
     for [name, typed] in COMMANDS {
         if wanted.as_ref().is_some_and(|word| !name.contains(&**word)) {
             continue;

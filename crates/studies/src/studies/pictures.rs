@@ -53,6 +53,7 @@ impl Pictures {
     /// none where any will do.
     pub fn read(section: &Section, key: &'static str, dimension: Dimension, path: &[f64]) -> Self {
         let fields = read_fields(section);
+        let models = read_models(section);
         let shown = read_shown(section, key, dimension, path);
         let formats = section.choices("formats", &PictureFormat::NAMES);
         if formats.as_ref().is_some_and(Vec::is_empty) {
@@ -71,7 +72,7 @@ impl Pictures {
         section.unknown_keys();
         Self {
             fields,
-            models: read_models(section),
+            models,
             shown,
             style,
         }
