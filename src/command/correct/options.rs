@@ -125,8 +125,8 @@ pub struct Options {
     /// The array of a VTK or Gmsh file
     #[arg(long, value_name = "NAME")]
     pub array: Option<String>,
-    /// Size of the cells of a generated mesh [default: nodes as far apart as the markers, at least 16 cells across,
-    /// about 5,000 at most, and more only where less would not go across]
+    /// Size of the cells of a generated mesh [default: nodes as far apart as the markers, but at least 16 cells
+    /// across; otherwise about 5,000 cells at most, 20,000 in slender specimens]
     #[arg(long, value_name = "LENGTH", value_parser = size, allow_hyphen_values = true)]
     pub cell_size: Option<f64>,
     /// Halve the cells of a generated mesh until its discretisation error is a small part of the stress intervals

@@ -182,6 +182,8 @@ impl CorrelatedRegression<'_> {
         const STEP: f64 = 1.8;
         let lengths = std::iter::successors(Some(0.6 * spacing), |length| Some(STEP * length));
         let lengths: Vec<f64> = lengths.take_while(|length| *length <= longest).collect();
+        // Once, before all threads need it.
+        self.sites.order();
         let mut tried = self.grid(Decay::Exponential, &lengths);
         let length = tried.iter().min_by(likelier)?.0.length;
         let around = [length / STEP, length, STEP * length];

@@ -13,7 +13,7 @@
 //! A. V. Vecchia, J. R. Stat. Soc. B 50, 297 (1988), doi:10.1111/j.2517-6161.1988.tb01729.x;
 //! J. Guinness, Technometrics 60, 415 (2018), doi:10.1080/00401706.2018.1437476
 
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
@@ -82,7 +82,7 @@ fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
 #[derive(Clone, Debug)]
 pub struct Sites {
     positions: Vec<[f64; 2]>,
-    order: OnceLock<Vec<(usize, Vec<usize>)>>,
+    order: Arc<OnceLock<Vec<(usize, Vec<usize>)>>>,
 }
 
 impl Sites {
@@ -90,13 +90,18 @@ impl Sites {
     pub fn new(positions: Vec<[f64; 2]>) -> Self {
         Self {
             positions,
-            order: OnceLock::new(),
+            order: Arc::default(),
         }
     }
 
-    fn order(&self) -> &[(usize, Vec<usize>)] {
-        let order = || nearest_before(&self.positions, NEIGHBOURS);
-        self.order.get_or_init(order)
+    /// All places, each with its nearest ones of those before it.
+    pub(super) fn order(&self) -> &[(usize, Vec<usize>)] {
+        if let Some(order) = self.order.get() {
+            return order;
+        }
+        // Made before the cell is locked: a thread that waits for others of its pool may come here again.
+        let order = nearest_before(&self.positions, NEIGHBOURS);
+        self.order.get_or_init(|| order)
     }
 
     /// The places.

@@ -1,6 +1,6 @@
 //! Which of the edges without a stated condition are free, as decided by the data.
 
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 
 use super::equations::Equations;
 use super::input::{Edge, EdgeCondition, Knowledge, Physics, Task, singular_corners};
@@ -115,7 +115,7 @@ fn all_free<'a>(task: &Task<'a>, given: &[Edge]) -> Option<(NearestField<'a>, Ve
         loaded[index].condition = given[index].condition;
         let scored = Equations::new(task, &loaded).ok()?;
         let scored = scored.score_released(&free).ok()?;
-        let loaded = (&scored.fit, &scored.variances);
+        let loaded = (&scored.fit, &scored.linear.design, &scored.variances);
         let probability = probability(loaded, &free, (&edges, level));
         edges[index].probability = Some(probability);
         if probability < level {
@@ -204,25 +204,28 @@ fn settle<'a>(
 /// The probability that noise alone increases the misfit by so much when a free edge is taken as free; where that is below a level, that noise
 /// and the mesh's own error do.
 fn probability(
-    (loaded, variances): (&Fit, &VarianceComponents),
+    (loaded, design, variances): (&Fit, &DMatrix<f64>, &VarianceComponents),
     free: &NearestField,
     (edges, level): (&[Edge], f64),
 ) -> f64 {
     let count = loaded.residual.len() as f64;
     let more = (loaded.effective - free.fit.effective).max(1.0);
     let rest = (count - loaded.effective).max(1.0);
-    let misfit = |fit: &Fit| free.misfit(fit, variances);
-    let (before, after) = (misfit(loaded), misfit(&free.fit));
-    let noise = before.max(free.rounding(variances)).max(f64::MIN_POSITIVE);
-    let of_misfit = |after: f64| {
+    let of_misfits = |before: f64, after: f64| {
+        let noise = before.max(free.rounding(variances)).max(f64::MIN_POSITIVE);
         let ratio = (after - before).max(0.0) / more / (noise / rest);
         f_tail([more, rest], ratio)
     };
-    let probability = of_misfit(after);
+    let [before, after] = [loaded, &free.fit].map(|fit| free.misfit(fit, variances));
+    let probability = of_misfits(before, after);
     if probability >= level {
         return probability;
     }
-    of_misfit(after - free.misfit_of_mesh(edges, variances))
+    let by_mesh = |fit, design| free.misfit_by_mesh(edges, (fit, design), variances);
+    of_misfits(
+        before - by_mesh(loaded, design),
+        after - by_mesh(&free.fit, &free.linear.design),
+    )
 }
 
 impl NearestField<'_> {
@@ -262,7 +265,7 @@ impl NearestField<'_> {
         weighted_square(&fit.residual, weights, &variances.trust)
     }
 
-    fn fitted(&self) -> (&Fit, &VarianceComponents) {
-        (&self.fit, &self.variances)
+    fn fitted(&self) -> (&Fit, &DMatrix<f64>, &VarianceComponents) {
+        (&self.fit, &self.linear.design, &self.variances)
     }
 }

@@ -24,7 +24,7 @@ use alternatives::Granted;
 pub use linear_model::{Model, Reference};
 pub use rows::{Rows, soundness};
 
-/// Probability under noise below which an alternative contradicts the equations. Nine are tried, and smoothness is chosen by the data.
+/// Probability under noise below which an alternative contradicts the equations. Seven are tried, and smoothness is chosen by the data.
 const LEVEL: f64 = 1e-5;
 
 /// The same where few values are independent and the correlation is uncertain: right equations have come to 1e-8 with noise correlated

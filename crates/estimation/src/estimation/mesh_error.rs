@@ -3,7 +3,7 @@
 use nalgebra::DVector;
 
 /// The mesh's own error is at most about so many times the difference that cells half as large make.
-pub const MESH_ERRORS: f64 = 2.0;
+pub const MESH_ERROR_FACTOR: f64 = 2.0;
 
 /// The mesh's own error.
 #[derive(Clone, Debug)]

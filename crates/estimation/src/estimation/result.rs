@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use super::equations::solve;
 use super::input::{Edge, Neighbours};
 use super::judge::{Judgement, judge};
-use super::mesh_error::{MESH_ERRORS, MeshError};
+use super::mesh_error::{MESH_ERROR_FACTOR, MeshError};
 use super::outcome::{
     Answer, EdgeOutcome, FieldEstimate, MarkerEstimate, RULE, RULE_WITH_MODEL_ERROR, Smoothing,
     StressEstimate,
@@ -25,7 +25,7 @@ impl NearestField<'_> {
     /// The field with all results that follow from it.
     pub fn into_estimate(mut self, edges: &[Edge]) -> Result<FieldEstimate, Error> {
         self.mesh_error(edges);
-        let mesh_error = self.refined.take().flatten();
+        let mesh_error = self.known_mesh_error.take().flatten();
         let mesh_error = mesh_error.as_ref();
         let judged = judge(&mut self, edges, mesh_error)?;
         let markers = self.markers(mesh_error);
@@ -245,14 +245,15 @@ impl NearestField<'_> {
         let mut all = vec![None; observations.markers];
         for (row, index) in observations.chosen.iter().enumerate() {
             let mesh_error = mesh_error.map_or([0.0; 2], |error| {
-                [0, 1].map(|axis| MESH_ERRORS * error.markers[2 * row + axis])
+                [0, 1].map(|axis| MESH_ERROR_FACTOR * error.markers[2 * row + axis])
             });
             all[*index] = Some(self.marker(row, mesh_error, limit));
         }
         all
     }
 
-    /// Cov(r) = v/w + (2 e)² + (1 − 2ω) A M⁻¹ Aᵀ: a marker with trust has drawn the field to it, one without has not.
+    /// Cov(r) = v/w + (1 − 2ω) A M⁻¹ Aᵀ: a marker with trust has drawn the field to it, one without has not. An outlier is farther off than noise
+    /// and (2 e)² of the mesh's own error explain.
     fn marker(&self, index: usize, mesh_error: [f64; 2], limit: f64) -> MarkerEstimate {
         let residuals = &self.fit.residual;
         let residual = Vector2::new(residuals[2 * index], residuals[2 * index + 1]);
@@ -260,22 +261,24 @@ impl NearestField<'_> {
         let spread: DMatrix<f64> = rows * &self.fit.covariance * rows.transpose();
         let trust = self.variances.trust[index];
         let weights = &self.observations().weights;
-        let variances = Vector2::from_fn(|axis, _| {
-            self.variances.sound / weights[2 * index + axis] + mesh_error[axis].powi(2)
-        });
-        let covariance = Matrix2::from_diagonal(&variances)
-            + (1.0 - 2.0 * trust) * spread.fixed_view::<2, 2>(0, 0);
-        let solved = covariance
-            .try_inverse()
-            .map_or(residual.component_div(&variances), |inverse| {
+        let square = |mesh_error: [f64; 2]| {
+            let variances = Vector2::from_fn(|axis, _| {
+                self.variances.sound / weights[2 * index + axis] + mesh_error[axis].powi(2)
+            });
+            let covariance = Matrix2::from_diagonal(&variances)
+                + (1.0 - 2.0 * trust) * spread.fixed_view::<2, 2>(0, 0);
+            let inverse = covariance.try_inverse();
+            let solved = inverse.map_or(residual.component_div(&variances), |inverse| {
                 inverse * residual
             });
-        let square = residual.dot(&solved).max(0.0);
+            residual.dot(&solved).max(0.0)
+        };
+        let by_noise = square([0.0; 2]);
         MarkerEstimate {
             residual: residual.into(),
-            standardised_residual: square.sqrt(),
+            standardised_residual: by_noise.sqrt(),
             trust,
-            outlier: square > limit,
+            outlier: by_noise > limit && square(mesh_error) > limit,
         }
     }
 }

@@ -40,7 +40,7 @@ pub struct NearestField<'a> {
     pub multipliers: Vec<f64>,
     pub steps: usize,
     /// The mesh's own error, once it was needed.
-    pub refined: OnceLock<Option<MeshError>>,
+    pub known_mesh_error: OnceLock<Option<MeshError>>,
 }
 
 /// One linearised regression.
@@ -105,7 +105,7 @@ impl<'a> Equations<'a> {
                     fit,
                     variances,
                     steps,
-                    refined: OnceLock::new(),
+                    known_mesh_error: OnceLock::new(),
                     equations: self,
                 });
             }

@@ -34,7 +34,7 @@ pub const TEXTS: [Setting; 5] = [
     setting("--unit", "unit or pixel", "mm, or 0.05 mm"),
     setting("--columns", "columns", "x=x_px,y=y_px,ux=u,uy=v"),
     setting("--edge-gap", "gap to the edge", "1 mm"),
-    setting("--cell-size", "size of cells", "as the markers"),
+    setting("--cell-size", "size of cells", "by the markers"),
 ];
 
 impl FieldQuestion {

@@ -11,7 +11,7 @@ use nalgebra::DMatrix;
 use crate::error::Error;
 use crate::estimation::equations::nodal_areas;
 use crate::estimation::input::Edge;
-use crate::estimation::mesh_error::{MESH_ERRORS, MeshError};
+use crate::estimation::mesh_error::{MESH_ERROR_FACTOR, MeshError};
 use crate::estimation::outcome::Alternative;
 use crate::estimation::search::NearestField;
 use crate::material::sheet::{Kinematics, PlaneTensor, cofactor};
@@ -68,7 +68,7 @@ impl NearestField<'_> {
         let mut all: Vec<Granted> = scale.into_iter().collect();
         all.extend(mesh_error.map(|error| Granted {
             design: DMatrix::from_column_slice(error.markers.len(), 1, &error.markers),
-            deviation: Some(MESH_ERRORS),
+            deviation: Some(MESH_ERROR_FACTOR),
         }));
         let (strips, squares) = self.unknown_places(edges);
         if !strips.is_empty() {

@@ -2,7 +2,7 @@
 
 use nalgebra::DMatrix;
 
-use crate::estimation::mesh_error::{MESH_ERRORS, MeshError};
+use crate::estimation::mesh_error::{MESH_ERROR_FACTOR, MeshError};
 use crate::estimation::regression::{Fit, VarianceComponents, squares};
 use crate::estimation::search::NearestField;
 use crate::statistics::{Sites, chi_squared_limit, extremes, nearest};
@@ -16,7 +16,8 @@ pub struct Rows {
     pub chosen: Vec<usize>,
     /// Their places.
     pub sites: Sites,
-    /// Of each component of each, 1/√(s²/(w ω) + (2 e)²): s the noise's standard deviation, e the mesh's own error there.
+    /// Of each component of each, 1/√(s²/(w ω) + e²): s the noise's standard deviation, e the mesh's own error there, of which a
+    /// common factor is granted besides.
     scales: Vec<f64>,
     /// Difference of the largest and the smallest coordinates, in mm.
     pub extent: [f64; 2],
@@ -57,7 +58,7 @@ impl Rows {
             };
             [0, 1].map(|axis| {
                 let row = 2 * marker + axis;
-                let mesh = mesh_error.map_or(0.0, |error| MESH_ERRORS * error.markers[row]);
+                let mesh = mesh_error.map_or(0.0, |error| error.markers[row]);
                 let weight = observations.weights[row] * trust / nearest_field.variances.sound;
                 weight.sqrt().recip().hypot(mesh).recip()
             })
@@ -155,5 +156,5 @@ fn leaves_nothing(
     let residual = sum(&|entry| nearest_field.fit.residual[entry]);
     let moved = sum(&|entry| observations.displacements[entry / 2][entry % 2]);
     let mesh = mesh_error.map_or(0.0, |mesh_error| sum(&|entry| mesh_error.markers[entry]));
-    residual <= (4.0 * mesh).max(ROUNDING * ROUNDING * moved)
+    residual <= (MESH_ERROR_FACTOR.powi(2) * mesh).max(ROUNDING * ROUNDING * moved)
 }

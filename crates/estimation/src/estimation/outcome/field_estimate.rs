@@ -196,7 +196,7 @@ pub struct MarkerEstimate {
     pub standardised_residual: f64,
     /// Factor of its weight, from 0 to 1.
     pub trust: f64,
-    /// Whether normal noise would leave so large a residual at less than one marker in a thousand.
+    /// Whether normal noise and the mesh's own error would leave so large a residual at less than one marker in a thousand.
     pub outlier: bool,
 }
 

@@ -19,8 +19,8 @@ use rayon::prelude::*;
 use crate::estimation::edges::Body;
 use crate::estimation::equations::{BodyForce, Equations, Linear};
 use crate::estimation::input::{Edge, EdgeCondition};
-use crate::estimation::mesh_error::{MESH_ERRORS, MeshError};
-use crate::estimation::regression::VarianceComponents;
+use crate::estimation::mesh_error::{MESH_ERROR_FACTOR, MeshError};
+use crate::estimation::regression::{Fit, VarianceComponents};
 use crate::estimation::search::NearestField;
 use crate::mesh::Mesh;
 use crate::problem::corner_forces::{Hold, Share, reaction_shares};
@@ -105,24 +105,38 @@ impl NearestField<'_> {
 
     /// The mesh's own error, where the difference is known; it is computed once.
     pub fn mesh_error(&self, edges: &[Edge]) -> Option<&MeshError> {
-        let refined = self.refined.get_or_init(|| self.compute_mesh_error(edges));
+        let refined = self
+            .known_mesh_error
+            .get_or_init(|| self.compute_mesh_error(edges));
         refined.as_ref()
     }
 
-    /// The part of a fit's misfit Σ w ω r² that the mesh's own error may make, with one factor for all markers.
-    pub fn misfit_of_mesh(&self, edges: &[Edge], variances: &VarianceComponents) -> f64 {
+    /// The part of the misfit Σ w ω r² of a regression that the mesh's own error e may make, with one factor α for all markers beside the
+    /// parameters of the regression:
+    ///
+    /// ```text
+    /// (eᵀWr)²/(eᵀWe − v tᵀCt + v/4),   t = −AᵀWe/v                 C, A: covariance and design; α of standard deviation 2
+    /// ```
+    pub fn misfit_by_mesh(
+        &self,
+        edges: &[Edge],
+        (fit, design): (&Fit, &DMatrix<f64>),
+        variances: &VarianceComponents,
+    ) -> f64 {
         let Some(error) = self.mesh_error(edges) else {
             return 0.0;
         };
         let weights = &self.observations().weights;
-        let rows = error.markers.iter().zip(&self.fit.residual).enumerate();
-        let (mut product, mut square) = (0.0, variances.variance / MESH_ERRORS.powi(2));
-        for (row, (error, residual)) in rows {
+        let (mut product, mut square) = (0.0, 0.0);
+        for (row, (error, residual)) in error.markers.iter().zip(&fit.residual).enumerate() {
             let weighted = variances.weight(weights, row) * error;
             product += weighted * residual;
             square += weighted * error;
         }
-        product * product / square
+        let target = self.equations.target_of(&error.markers, design, variances);
+        let fitted = variances.variance * target.dot(&(&fit.covariance * &target));
+        let prior = variances.variance / MESH_ERROR_FACTOR.powi(2);
+        product * product / ((square - fitted).max(0.0) + prior)
     }
 
     fn compute_mesh_error(&self, edges: &[Edge]) -> Option<MeshError> {

@@ -90,8 +90,9 @@ fn judged_with(mut estimate: FieldEstimate, without: Option<FieldEstimate>) -> F
 }
 
 fn has_gross_errors(estimate: &FieldEstimate) -> bool {
-    let distances = estimate.markers.iter().flatten();
-    let largest = distances.map(|marker| marker.standardised_residual);
+    let outliers = estimate.markers.iter().flatten();
+    let outliers = outliers.filter(|marker| marker.outlier);
+    let largest = outliers.map(|marker| marker.standardised_residual);
     let largest = largest.fold(0.0, f64::max);
     used(estimate) as f64 * (-0.5 * largest * largest).exp() < CHANCE
 }

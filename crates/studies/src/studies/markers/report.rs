@@ -142,7 +142,7 @@ const EXPLANATION: &str = "Noise is the standard deviation of each component of 
     mean square of measured minus corrected displacements. Standard errors and intervals (95 %) include the noise \
     and the discretisation error of the mesh, estimated from the same equations on cells half as large (left out on meshes of more \
     than 25,000 cells); they are valid only where the verdict is that the data are explained. An outlier is a \
-    marker whose residual normal noise would exceed with a probability below 0.001.";
+    marker whose residual normal noise and that error would exceed with a probability below 0.001.";
 
 const TRANSFERRED: &str = "The given field is assumed to be free of noise: edges that are not free keep its displacements, and \
     the interior and the free edges are brought into equilibrium on the new mesh. The correction is the given field minus the \

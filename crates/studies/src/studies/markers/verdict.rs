@@ -70,7 +70,7 @@ pub fn lines(study: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<String> {
         let words = if estimate.holds_mesh_error {
             "no alternative tried (edges, forces, stiffness, law) improves the fit"
         } else {
-            "no alternative tried (edges, forces, stiffness, law) improves the fit; the mesh's discretisation error could not be estimated: use fewer cells"
+            "no alternative tried (edges, forces, stiffness, law) improves the fit; the mesh's discretisation error could not be estimated"
         };
         lines.push(words.to_owned());
     }
