@@ -78,11 +78,14 @@ fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
     (a[0] - b[0]).hypot(a[1] - b[1])
 }
 
+/// Places one after the other, each with its nearest ones of those before it.
+type Order = Vec<(usize, Vec<usize>)>;
+
 /// Places with an order in which each one follows from few before it.
 #[derive(Clone, Debug)]
 pub struct Sites {
     positions: Vec<[f64; 2]>,
-    order: Arc<OnceLock<Vec<(usize, Vec<usize>)>>>,
+    order: Arc<OnceLock<Order>>,
 }
 
 impl Sites {
@@ -94,7 +97,6 @@ impl Sites {
         }
     }
 
-    /// All places, each with its nearest ones of those before it.
     pub(super) fn order(&self) -> &[(usize, Vec<usize>)] {
         if let Some(order) = self.order.get() {
             return order;
