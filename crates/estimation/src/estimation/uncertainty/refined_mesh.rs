@@ -115,7 +115,7 @@ impl NearestField<'_> {
     /// parameters of the regression:
     ///
     /// ```text
-    /// (eᵀWr)²/(eᵀWe − v tᵀCt + v/4),   t = −AᵀWe/v                 C, A: covariance and design; α of standard deviation 2
+    /// max 2 α eᵀWr − α² (eᵀWe − v tᵀCt + v/4),   |α| ≤ 2,   t = −AᵀWe/v                  C, A: covariance and design
     /// ```
     pub fn misfit_by_mesh(
         &self,
@@ -136,7 +136,9 @@ impl NearestField<'_> {
         let target = self.equations.target_of(&error.markers, design, variances);
         let fitted = variances.variance * target.dot(&(&fit.covariance * &target));
         let prior = variances.variance / MESH_ERROR_FACTOR.powi(2);
-        product * product / ((square - fitted).max(0.0) + prior)
+        let curvature = (square - fitted).max(0.0) + prior;
+        let factor = (product / curvature).clamp(-MESH_ERROR_FACTOR, MESH_ERROR_FACTOR);
+        factor * (2.0 * product - factor * curvature)
     }
 
     fn compute_mesh_error(&self, edges: &[Edge]) -> Option<MeshError> {
