@@ -74,18 +74,21 @@ pub fn lines(study: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<String> {
         };
         lines.push(words.to_owned());
     }
-    let residual_rms = estimate.verdict.residual_rms.filter(|_| !trials.is_empty());
+    let shown = &trials[..trials.len().min(SHOWN)];
+    let has_residual = shown.iter().any(|trial| trial.residual_rms.is_finite());
+    let residual_rms = estimate.verdict.residual_rms.filter(|_| has_residual);
     lines.extend(residual_rms.map(|residual_rms| {
         format!(
             "without outliers the residual is {} mm; in one linearised step it would be",
             decimals(residual_rms, 5)
         )
     }));
-    lines.extend(trials.iter().take(SHOWN).map(|trial| {
+    lines.extend(shown.iter().map(|trial| {
         let words = trial_words(study, trial);
-        residual(trial.residual_rms).map_or(format!("with {words}"), |residual| {
-            format!("{residual} mm with {words}")
-        })
+        match residual(trial.residual_rms) {
+            Some(residual) => format!("{residual} mm with {words}"),
+            None => format!("the measured force would agree with {words}"),
+        }
     }));
     lines
 }
