@@ -24,8 +24,8 @@ const FALSE_ALARMS: f64 = 1e-3;
 impl NearestField<'_> {
     /// The field with all results that follow from it.
     pub fn into_estimate(mut self, edges: &[Edge]) -> Result<FieldEstimate, Error> {
-        self.mesh_error(edges);
-        let mesh_error = self.known_mesh_error.take().flatten();
+        let known = self.known_mesh_error.take();
+        let mesh_error = known.unwrap_or_else(|| self.compute_mesh_error(edges));
         let mesh_error = mesh_error.as_ref();
         let judged = judge(&mut self, edges, mesh_error)?;
         let markers = self.markers(mesh_error);

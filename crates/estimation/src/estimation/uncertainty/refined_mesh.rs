@@ -141,7 +141,8 @@ impl NearestField<'_> {
         factor * (2.0 * product - factor * curvature)
     }
 
-    fn compute_mesh_error(&self, edges: &[Edge]) -> Option<MeshError> {
+    /// The mesh's own error, computed again even where it is known.
+    pub fn compute_mesh_error(&self, edges: &[Edge]) -> Option<MeshError> {
         let mesh = self.equations.task.specimen.mesh;
         let difference = self.mesh_difference(edges)?;
         let target = self
