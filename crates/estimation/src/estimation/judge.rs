@@ -20,7 +20,7 @@ mod alternatives;
 mod linear_model;
 mod rows;
 
-use alternatives::Granted;
+use alternatives::{Column, Granted};
 pub use linear_model::{Model, Reference};
 pub use rows::{Rows, soundness};
 
@@ -77,6 +77,7 @@ pub fn judge(
         return Ok(Judgement::default());
     };
     let granted = nearest_field.granted(edges, mesh_error)?;
+    let knowledge_of_edges = nearest_field.equations.task.knowledge.edge_gap;
     let base = Model::of_search(&rows, nearest_field).granting(&rows, &granted);
     let mut noises = base.noises(&rows);
     let noise = noises.first();
@@ -88,15 +89,27 @@ pub fn judge(
         rows: &rows,
         base: &base,
     };
-    let trials = columns.into_iter().map(|(alternative, design)| {
-        basis.try_out(nearest_field, alternative, &base.with(&rows, [&design]))
-    });
-    let mut trials: Vec<Trial> = trials.collect();
-    let together = all.map(|model| basis.try_out(nearest_field, Alternative::Edges, &model));
+    let mut trials = basis.try_columns(nearest_field, &columns);
+    let together = all
+        .as_ref()
+        .map(|model| basis.try_out(nearest_field, Alternative::Edges, model));
     let correlation = noise.map(|noise| rows.correlation(noise));
     let few = few(correlation, nearest_field);
     let level = if few.is_some() { STRICT } else { LEVEL };
-    let against = improvement(trials.iter().chain(&together), level);
+    let mut against = improvement(trials.iter().chain(&together), level);
+    let mut unknown_edges = None;
+    if let (Some(_), Some(gap), Some(model)) = (against, knowledge_of_edges, &all) {
+        let loaded = Basis {
+            reference: Reference::new(&rows, noise, model, None, &columns),
+            rows: &rows,
+            base: model,
+        };
+        let beyond = loaded.try_columns(nearest_field, &columns);
+        if improvement(beyond.iter(), level).is_none() {
+            unknown_edges = Some(Reason::UnknownEdges(gap));
+            against = None;
+        }
+    }
     let mut contradiction = None;
     if against.is_some() {
         let (of_edges, contradicted) =
@@ -108,7 +121,8 @@ pub fn judge(
     let residual_rms = base.residual_rms(&rows, nearest_field);
     trials.retain(|trial| trial.residual_rms < EXPLAINS * residual_rms);
     trials.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-    let answer = answer(against, few, correlation);
+    let undecided = unknown_edges.or(few);
+    let answer = answer(against, undecided, correlation);
     if answer != Answer::Undecided {
         noises.truncate(1);
     }
@@ -116,7 +130,7 @@ pub fn judge(
         answer,
         correlation,
         worst: against.and_then(|_| rows.worst(nearest_field)),
-        reasons: against.or(few).into_iter().collect(),
+        reasons: against.or(undecided).into_iter().collect(),
         trials,
         residual_rms: Some(residual_rms).filter(|rms| rms.is_finite()),
     };
@@ -169,6 +183,15 @@ impl Basis<'_> {
         let moved = nearest_field.moved_edges(edges)?.into_iter();
         trials.extend(moved.filter_map(|edge| self.moved(nearest_field, edge)));
         Ok((trials, contradiction))
+    }
+
+    /// What each of some columns explains.
+    fn try_columns(&self, nearest_field: &NearestField, columns: &[Column]) -> Vec<Trial> {
+        let trials = columns.iter().map(|(alternative, design)| {
+            let model = self.base.with(self.rows, [design]);
+            self.try_out(nearest_field, alternative.clone(), &model)
+        });
+        trials.collect()
     }
 
     fn try_out(

@@ -4,9 +4,10 @@
 //! radius below 1.9 s, where the spacing s is the median length of all Delaunay edges (an α-shape). This closes gaps
 //! of up to two by two points of a grid; a wider one inside is a hole. The lines are then straightened where this
 //! moves them by less than 0.55 s, so that the staircase of a grid along an oblique edge becomes one edge, and
-//! rounded where they are curved. Where points are scattered, as where many points of a grid are lost, gaps at the
-//! edge are wider: the outer line is then that of circles 1.6 times as large. Scattered points, and steps of the
-//! outer line shorter than 2.5 spacings, are reported as doubts.
+//! rounded where they are curved. An outer line that bridges dents of up to a spacing by few long sides is a polygon
+//! of these, however a grid is turned against it. Where points are scattered, as where many points of a grid are lost,
+//! gaps at the edge are wider: the outer line is then that of circles 1.6 times as large, and dents are deeper by as
+//! much. Scattered points are reported as a doubt.
 //!
 //! Meshes have nodes in a triangular lattice inside and evenly along the lines; where an angle would be below 25°,
 //! nodes are added (Ruppert's refinement).
@@ -26,6 +27,7 @@ use crate::units::SIZES;
 
 mod alpha_shape;
 mod corners;
+mod envelope;
 mod fault;
 mod lattice;
 mod polygon;
@@ -68,12 +70,15 @@ pub struct OutlineOfPoints {
 /// this: 1 on a square grid, 1.07 on a triangular one, 0.87 where a quarter of a grid is lost, 0.5 where they lie at random.
 const SCATTERED: f64 = 0.87;
 
+/// Sides of polygons are straightened by so many times more and more, up to this share of the depth of dents.
+const ROUGHER: f64 = 1.6;
+const ROUGHEST: f64 = 0.9;
+
+/// Dents of the outer line no deeper than so many spacings are bridged.
+const DEEP: f64 = 1.05;
+
 /// Factor of the circles' radius for the outer line of scattered points.
 const WIDER: f64 = 1.6;
-
-/// A step of the outer line turns by more than this one way and then the other, within so many spacings.
-const STEP_TURN: f64 = 20.0 * std::f64::consts::PI / 180.0;
-const STEP_LENGTH: f64 = 2.5;
 
 impl Outline {
     /// The lines around points.
@@ -89,7 +94,7 @@ impl Outline {
             return Err(OutlineFault::TooFew(points.len()));
         }
         let (mut lines, spacing) = alpha_shape::lines(&points, 1.0)?;
-        let (mut outline, mut steps) = Self::behind(&lines, spacing)?;
+        let mut outline = Self::behind(&lines, spacing, DEEP * spacing)?;
         let mut doubts = Vec::new();
         let regular = regularity(&points, outline.area());
         let is_scattered = regular < SCATTERED;
@@ -100,23 +105,15 @@ impl Outline {
             ));
             // Gaps at the edge are wider then; holes are found as usual.
             let (wide_lines, _) = alpha_shape::lines(&points, WIDER)?;
-            let (wide, steps_of_wide) = Self::behind(&wide_lines, spacing)?;
+            let wide = Self::behind(&wide_lines, spacing, DEEP * WIDER * spacing)?;
             let wider = Self {
                 outer: wide.outer,
                 holes: outline.holes.clone(),
             };
             if wider.check().is_ok() {
                 outline = wider;
-                steps = steps_of_wide;
                 lines = wide_lines;
             }
-        }
-        if let Some([x, y]) = steps.first() {
-            let count = steps.len();
-            doubts.push(format!(
-                "the outline has {count} steps of less than {STEP_LENGTH} spacings, one near ({x:.2}, {y:.2}) mm: either markers were lost at the \
-                 edge, or this is the specimen's shape"
-            ));
         }
         outline.check()?;
         Ok(OutlineOfPoints {
@@ -128,26 +125,19 @@ impl Outline {
         })
     }
 
-    /// The lines without the steps of a grid, and the places where the outer one has other steps.
-    fn behind(
-        lines: &[Vec<[f64; 2]>],
-        spacing: f64,
-    ) -> Result<(Self, Vec<[f64; 2]>), OutlineFault> {
+    /// The lines without the steps of a grid: polygons, which dents no deeper than `deep` do not make ragged, else smoothed.
+    fn behind(lines: &[Vec<[f64; 2]>], spacing: f64, deep: f64) -> Result<Self, OutlineFault> {
         let near = STRAIGHT * spacing;
-        let smooth = lines
-            .iter()
-            .map(|line| smoothing::smoothed(line, near, spacing));
+        let smooth = lines.iter().map(|line| {
+            let polygon = polygon_behind(line, deep, spacing);
+            polygon.unwrap_or_else(|| smoothing::smoothed(line, near, spacing))
+        });
         let smooth = Self::of_each(smooth)?;
-        let plain = lines.iter().map(|line| polygon::straightened(line, near));
-        let plain = Self::of_each(plain)?;
-        let steps = polygon::steps(&plain.outer, STEP_TURN, STEP_LENGTH * spacing);
         // A smoothed line may come nearer to itself than the points do.
-        let outline = if smooth.check().is_ok() {
-            smooth
-        } else {
-            plain
-        };
-        Ok((outline, steps))
+        if smooth.check().is_ok() {
+            return Ok(smooth);
+        }
+        Self::of_each(lines.iter().map(|line| polygon::straightened(line, near)))
     }
 
     /// The outline from lines around the specimen and its holes; lines that nearly vanish are left out.
@@ -320,6 +310,16 @@ impl Outline {
         }
         mesh.name_boundary("boundary", |_| true);
     }
+}
+
+/// The polygon behind an outer line with dents up to `deep`, where it is one: as straight as can be.
+fn polygon_behind(line: &[[f64; 2]], deep: f64, spacing: f64) -> Option<Vec<[f64; 2]>> {
+    let is_outer = polygon_area(line) > 0.0;
+    let bridged = is_outer.then(|| envelope::without_dents(line, deep, spacing))?;
+    let next = |near: &f64| Some(ROUGHER * near);
+    let nears = std::iter::successors(Some(STRAIGHT * spacing), next);
+    let mut nears = nears.take_while(|near| *near < ROUGHEST * deep);
+    nears.find_map(|near| envelope::polygonal(&bridged, [near, deep], spacing))
 }
 
 /// A point with coordinates far below any size set to zero: triangulations cannot distinguish them from it.

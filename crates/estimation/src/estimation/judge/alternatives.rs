@@ -72,10 +72,11 @@ impl NearestField<'_> {
         }));
         let (strips, squares) = self.unknown_places(edges);
         if !strips.is_empty() {
+            let independent = squares.cholesky().map(|factor| factor.l());
             let designs = self.marker_changes(&strips)?;
-            all.extend((0..designs.ncols()).map(|column| Granted {
-                design: designs.columns(column, 1).into_owned(),
-                deviation: Some(squares[(column, column)].sqrt()),
+            all.extend(independent.map(|factor| Granted {
+                design: designs * factor,
+                deviation: Some(1.0),
             }));
         }
         Ok(all)

@@ -112,9 +112,8 @@ impl Model {
                 if length > 0.0 && length.is_finite() {
                     let scale = (column.len() as f64).sqrt() / length;
                     columns.push(column * scale);
-                    information.push(deviation.map_or(0.0, |deviation_of_force| {
-                        (scale / deviation_of_force).powi(2)
-                    }));
+                    information
+                        .push(deviation.map_or(0.0, |deviation| (scale / deviation).powi(2)));
                 }
             }
         }

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use serde::{Deserialize, Serialize};
 
-use super::verdict::{Answer, Verdict};
+use super::verdict::{Answer, Reason, Verdict};
 use crate::estimation::input::{EdgeCondition, MeasuredForce};
 use crate::estimation::regression::Robust;
 use crate::estimation::uncertainty::ScaleChange;
@@ -116,6 +116,15 @@ impl FieldEstimate {
     /// Whether its intervals are valid.
     pub fn has_intervals(&self) -> bool {
         self.verdict.has_intervals()
+    }
+
+    /// How far free edges may lie outside of those of the mesh, in mm, where the data cannot judge for that reason.
+    pub fn unknown_edges(&self) -> Option<f64> {
+        let mut reasons = self.verdict.reasons.iter();
+        reasons.find_map(|reason| match reason {
+            Reason::UnknownEdges(gap) => Some(*gap),
+            _ => None,
+        })
     }
 
     /// The share of the area on which the mesh's own error is the larger part of the error of stress, and more than a

@@ -14,8 +14,8 @@ pub enum Answer {
     Explained,
     /// The residuals are noise that is correlated between neighbours; the intervals include that.
     Correlated,
-    /// Nothing speaks against the equations, but the data would hardly show it: too few of their values are independent, or gross
-    /// errors make up their noise.
+    /// Nothing speaks against the equations, but the data would hardly show it: too few of their values are independent, gross
+    /// errors make up their noise, or only the markers show free edges that they contradict.
     Undecided,
     /// The residuals are not noise: intervals are not valid.
     NotExplained,
@@ -62,8 +62,9 @@ pub struct Verdict {
 impl Verdict {
     /// Whether intervals are valid: where the residuals are noise, or may be as far as so few independent values show.
     pub fn has_intervals(&self) -> bool {
-        let gross = |reason: &Reason| matches!(reason, Reason::GrossErrors(_));
-        self.answer != Answer::NotExplained && !self.reasons.iter().any(gross)
+        let without =
+            |reason: &Reason| matches!(reason, Reason::GrossErrors(_) | Reason::UnknownEdges(_));
+        self.answer != Answer::NotExplained && !self.reasons.iter().any(without)
     }
 }
 
@@ -92,6 +93,8 @@ pub enum Reason {
         /// The number of markers with white noise.
         independent: f64,
     },
+    /// The data contradict free edges as the markers show them, which may lie so many mm farther out.
+    UnknownEdges(f64),
     /// Gross errors make up the noise, which has this standard deviation in mm.
     GrossErrors(f64),
     /// A measured force is off by so many standard errors.
@@ -117,6 +120,10 @@ impl Reason {
                 "the residuals correlate over {length:.3} mm, so that the markers are worth {independent:.0} independent ones: too few to \
                  tell noise from a misfit, which is no evidence against the law"
             ),
+            Self::UnknownEdges(_) => {
+                "the data contradict the free edges where the markers end, and nothing else"
+                    .to_owned()
+            }
             Self::GrossErrors(noise) => format!(
                 "many markers lie much closer to the field than a noise of {} mm suggests: gross errors make up this noise, and with it any \
                  law fits: leave out markers that were lost or matched wrongly, or try --robust tukey",

@@ -10,12 +10,18 @@
 //!
 //! with A, W, v, G, M of [`crate::estimation::regression`], Σ the covariance of c, and f the measured forces. The field remains
 //! the one with the parameters as they are given: they are considered, but not estimated (Schmidt), so that data with little information on
-//! them do not move the field.
+//! them do not move the field. What the data r show of edges counts in Σ, whose values are those about nothing:
+//!
+//! ```text
+//! J = Σ₀⁻¹ + (Hs)ᵀV(Hs) − (Hs)ᵀVA M⁻¹ AᵀV(Hs),   d = J⁻¹ (Hs)ᵀVr,   Σ = J⁻¹ + ddᵀ      Σ₀ before the data, V = W/v
+//! ```
 //!
 //! # References
 //! S. F. Schmidt, Adv. Control Syst. 3, 293 (1966), doi:10.1016/B978-1-4831-6716-9.50011-4
 
-use nalgebra::{DMatrix, DVector};
+use std::ops::AddAssign;
+
+use nalgebra::{DMatrix, DMatrixView, DVector};
 
 use crate::error::Error;
 use crate::estimation::equations::solve;
@@ -52,9 +58,6 @@ impl NearestField<'_> {
                 .view_mut((0, 0), (of_law, of_law))
                 .copy_from(law.covariance());
         }
-        squares
-            .view_mut((of_law, of_law), (strips.len(), strips.len()))
-            .copy_from(&of_places);
         let forces = [slopes.clone(), strips].concat();
         let tangent = &mut self.equations.newton.tangent;
         let changes = tangent.changes(&forces).map_err(solve)?;
@@ -63,11 +66,52 @@ impl NearestField<'_> {
             let target = self.target(change, force)?;
             answers.set_column(index, &(&self.fit.covariance * target));
         }
+        let of_places = self.given_the_data(
+            of_places,
+            &changes[of_law..],
+            &answers.columns_range(of_law..),
+        );
+        squares
+            .view_mut((of_law, of_law), of_places.shape())
+            .copy_from(&of_places);
         Ok(Considered {
             slopes,
             changes,
             answers,
             squares,
+        })
+    }
+
+    /// The mean squares of edges' distances given the data, from those without them; these where they are nothing or singular.
+    fn given_the_data(
+        &self,
+        before: DMatrix<f64>,
+        changes: &[Vec<f64>],
+        answers: &DMatrixView<f64>,
+    ) -> DMatrix<f64> {
+        let Some(factor) = before.clone().cholesky().filter(|_| !changes.is_empty()) else {
+            return before;
+        };
+        let interpolation = &self.observations().interpolation;
+        let columns = changes
+            .iter()
+            .map(|change| DVector::from_vec(interpolation.multiply(change)));
+        let at_markers = DMatrix::from_columns(&columns.collect::<Vec<_>>());
+        let target_of = |displacements: &[f64], design: &DMatrix<f64>| {
+            self.equations
+                .target_of(displacements, design, &self.variances)
+        };
+        let mut information = factor.inverse();
+        for (index, column) in at_markers.column_iter().enumerate() {
+            let column = column.as_slice();
+            let by_field = answers.tr_mul(&target_of(column, &self.linear.design));
+            let added = -target_of(column, &at_markers) - by_field;
+            information.column_mut(index).add_assign(&added);
+        }
+        let slope = -target_of(self.fit.residual.as_slice(), &at_markers);
+        information.cholesky().map_or(before, |factor| {
+            let best = factor.solve(&slope);
+            factor.inverse() + &best * best.transpose()
         })
     }
 

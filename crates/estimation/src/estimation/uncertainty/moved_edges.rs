@@ -14,7 +14,7 @@ use nalgebra::DMatrix;
 
 use crate::error::Error;
 use crate::estimation::equations::solve;
-use crate::estimation::input::{Edge, EdgeCondition};
+use crate::estimation::input::{Edge, EdgeCondition, Segment};
 use crate::estimation::outcome::MovedPart;
 use crate::estimation::search::NearestField;
 use crate::material::sheet::{Kinematics, PlaneTensor};
@@ -109,19 +109,20 @@ impl NearestField<'_> {
     }
 
     /// The forces in N/mm of a strip along each of the free edges.
-    pub(in crate::estimation) fn strips(&self, edges: &[Edge]) -> Vec<Vec<f64>> {
+    fn strips(&self, edges: &[Edge]) -> Vec<Vec<f64>> {
         let free = edges.iter().filter(|edge| edge.has_strip());
-        free.map(|edge| self.strip(&edge.segment.nodes)).collect()
+        free.map(|edge| self.strip(&edge.segment, &|_| 1.0))
+            .collect()
     }
 
-    /// The forces in N/mm on all unknowns of a strip along an edge.
-    fn strip(&self, nodes: &[usize]) -> Vec<f64> {
+    /// The forces in N/mm on all unknowns of a strip along an edge, relative to its width, a function of the arc length in mm.
+    pub(super) fn strip(&self, edge: &Segment, width: &dyn Fn(f64) -> f64) -> Vec<f64> {
         /// Half the distance of both points of Gauss's rule from the middle, over the length.
         const HALF: f64 = 0.288_675_134_594_812_9;
         let specimen = &self.equations.task.specimen;
         let mesh = specimen.mesh;
         let mut forces = vec![0.0; self.field.len()];
-        for pair in nodes.windows(2) {
+        for (pair, start) in edge.nodes.windows(2).zip(&edge.positions) {
             let [a, b] = [mesh.nodes[pair[0]], mesh.nodes[pair[1]]];
             let along = [b[0] - a[0], b[1] - a[1]];
             let length = along[0].hypot(along[1]);
@@ -136,12 +137,13 @@ impl NearestField<'_> {
                 let stress = self.equations.law(cell).stress(&kinematics).1;
                 let tension = [0, 1]
                     .map(|axis| stress[2 * axis] * tangent[0] + stress[2 * axis + 1] * tangent[1]);
-                let weight = 0.5 * length * specimen.thickness;
+                let width = width(start + share * length);
+                let weight = 0.5 * length * width * specimen.thickness;
                 let (slopes, _) = mesh.gradients(cell, local);
                 for (node, slope) in mesh.cell(cell).iter().zip(slopes) {
-                    let share = slope[0] * tangent[0] + slope[1] * tangent[1];
+                    let slope = slope[0] * tangent[0] + slope[1] * tangent[1];
                     for axis in [0, 1] {
-                        forces[2 * node + axis] += weight * tension[axis] * share;
+                        forces[2 * node + axis] += weight * tension[axis] * slope;
                     }
                 }
             }

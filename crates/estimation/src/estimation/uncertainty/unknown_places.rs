@@ -1,14 +1,22 @@
 //! Free edges where only the markers show the position of the specimen's edge, as considered parameters ([`super::considered`]).
 //!
 //! ```text
-//! sₖ = ∂u/∂dₖ                                    d the distance of edge k outside of the mesh's ([`super::moved_edges`])
-//! Σₖₗ = E(dₖdₗ) = g²/4,  Σₖₖ = g²/3               each edge lies as probably anywhere from nothing to the gap g farther out
+//! sₖ = ∂u/∂dₖ                                    dₖ the distance of an edge outside of the mesh's at one of its points, linear
+//!                                                between them ([`super::moved_edges`])
+//! Σₖₗ = E(dₖdₗ) = g²/4,  Σₖₖ = g²/3               each point lies as probably anywhere from nothing to the gap g farther out
 //! ```
+//!
+//! Points are eight gaps apart or more: an edge that is inclined by as little as an eighth against that of the mesh changes the field
+//! more than one farther out.
 
 use nalgebra::DMatrix;
 
 use crate::estimation::input::Edge;
 use crate::estimation::search::NearestField;
+
+/// Points of an edge are so many gaps apart at least, and no more than so many parts of it lie between them.
+const APART: f64 = 8.0;
+const MOST_PARTS: f64 = 6.0;
 
 impl NearestField<'_> {
     /// The forces of the strips beside the free edges in N/mm, and Σ in mm²; nothing where the edges are known.
@@ -19,10 +27,25 @@ impl NearestField<'_> {
         let Some(gap) = self.equations.task.knowledge.edge_gap else {
             return (Vec::new(), DMatrix::zeros(0, 0));
         };
-        let strips = self.strips(edges);
+        let free = edges.iter().filter(|edge| edge.has_strip());
+        let strips = free.flat_map(|edge| self.strips_between_points(edge, gap));
+        let strips: Vec<Vec<f64>> = strips.collect();
         let square = |i, j| gap * gap / if i == j { 3.0 } else { 4.0 };
         let squares = DMatrix::from_fn(strips.len(), strips.len(), square);
         (strips, squares)
+    }
+
+    /// The forces in N/mm of the strips to each side of points along an edge, as wide as linear interpolation between them is.
+    fn strips_between_points(&self, edge: &Edge, gap: f64) -> Vec<Vec<f64>> {
+        let length = edge.segment.length();
+        let parts = (length / (APART * gap)).floor().clamp(1.0, MOST_PARTS);
+        let at = |arc: f64| parts * arc / length;
+        let points = 0..=parts as usize;
+        let strip = |point: usize| {
+            let width = |arc: f64| (1.0 - (at(arc) - point as f64).abs()).max(0.0);
+            self.strip(&edge.segment, &width)
+        };
+        points.map(strip).collect()
     }
 }
 

@@ -98,23 +98,6 @@ pub fn turn_between(before: [[f64; 2]; 2], next: [[f64; 2]; 2]) -> f64 {
     change.sin().atan2(change.cos())
 }
 
-/// The middles of edges no longer than `most` at whose ends a line turns by more than `turn` one way and then the other.
-pub fn steps(line: &[[f64; 2]], turn: f64, most: f64) -> Vec<[f64; 2]> {
-    let edges: Vec<[[f64; 2]; 2]> = Polygon(line).edges().collect();
-    let count = edges.len();
-    let turn_at = |i: usize| turn_between(edges[(i + count - 1) % count], edges[i]);
-    let is_step = |i: &usize| {
-        let [first, second] = [turn_at(*i), turn_at((i + 1) % count)];
-        let sharp = first.abs() > turn && second.abs() > turn && first * second < 0.0;
-        sharp && length(edges[*i][0], edges[*i][1]) <= most
-    };
-    let middle = |i: usize| {
-        let [a, b] = edges[i];
-        [(a[0] + b[0]) / 2.0, (a[1] + b[1]) / 2.0]
-    };
-    (0..count).filter(is_step).map(middle).collect()
-}
-
 /// A line with every edge moved by a distance to its right; at sharp corners no point moves by more than three distances.
 pub fn shifted(line: &[[f64; 2]], distance: f64) -> Vec<[f64; 2]> {
     const SHARPEST: f64 = 2.0 / 9.0;

@@ -6,6 +6,7 @@
 use nalgebra::{SymmetricEigen, Vector2};
 
 use super::polygon::distance;
+use crate::mesh::geometry::distance as length;
 
 /// Points of a row lie within this of its line, in spacings, by root mean square: steps of a grid along an oblique edge, which would take
 /// the line into the specimen, are 0.29 off.
@@ -34,19 +35,48 @@ impl SideLine {
         if row.len() < FEWEST || is_exact {
             return None;
         }
+        let (line, across) = Self::through(row);
+        (across < EVEN * spacing).then_some(line)
+    }
+
+    /// The line nearest to points, in their direction; those within `ends` of the first and the last one, which may belong to a corner, do not
+    /// count where others are three or more.
+    pub fn nearest_to(row: &[[f64; 2]], ends: f64) -> Self {
+        let [first, last] = [row[0], row[row.len() - 1]];
+        let is_amid = |point: &&[f64; 2]| length(**point, first).min(length(**point, last)) > ends;
+        let amid: Vec<[f64; 2]> = row.iter().filter(is_amid).copied().collect();
+        let (Self { centre, along }, _) = Self::through(if amid.len() > 2 { &amid } else { row });
+        let chord = Vector2::from(last) - Vector2::from(first);
+        let along = along * along.dot(&chord).signum();
+        Self { centre, along }
+    }
+
+    /// The line nearest to points, and the root mean square of their distances.
+    fn through(row: &[[f64; 2]]) -> (Self, f64) {
         let points = || row.iter().map(|point| Vector2::from(*point));
         let centre = points().sum::<Vector2<f64>>() / row.len() as f64;
         let scatter = points().map(|point| (point - centre) * (point - centre).transpose());
         let scatter = SymmetricEigen::new(scatter.sum());
+        let along = scatter.eigenvectors.column(scatter.eigenvalues.imax());
         let line = Self {
             centre,
-            along: scatter
-                .eigenvectors
-                .column(scatter.eigenvalues.imax())
-                .into(),
+            along: along.into(),
         };
         let across = (scatter.eigenvalues.min().max(0.0) / row.len() as f64).sqrt();
-        (across < EVEN * spacing).then_some(line)
+        (line, across)
+    }
+
+    /// Where another side that follows this one meets it by a turn of more than `least`, in rad.
+    pub fn corner_with(self, other: Self, least: f64) -> Option<[f64; 2]> {
+        let (sine, cosine) = (self.along.perp(&other.along), self.along.dot(&other.along));
+        let turns = sine.atan2(cosine).abs() > least;
+        self.crossing(other).filter(|_| turns).map(Into::into)
+    }
+
+    /// How far a point lies from the line.
+    pub fn distance(self, point: [f64; 2]) -> f64 {
+        let point = Vector2::from(point);
+        (self.nearest(point) - point).norm()
     }
 
     fn nearest(self, point: Vector2<f64>) -> Vector2<f64> {

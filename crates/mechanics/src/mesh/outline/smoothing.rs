@@ -139,7 +139,7 @@ fn meet_at_a_corner(before: &Part, next: &Part, spacing: f64) -> bool {
 }
 
 /// The points of a closed line from one to another one.
-fn part(line: &[[f64; 2]], from: usize, to: usize) -> Part {
+pub fn part(line: &[[f64; 2]], from: usize, to: usize) -> Part {
     let count = line.len();
     let steps = (to + count - from - 1) % count + 1;
     (0..=steps)
@@ -147,12 +147,12 @@ fn part(line: &[[f64; 2]], from: usize, to: usize) -> Part {
         .collect()
 }
 
-fn chord(part: &[[f64; 2]]) -> f64 {
+pub fn chord(part: &[[f64; 2]]) -> f64 {
     length(part[0], part[part.len() - 1])
 }
 
 /// How far a part bulges between its ends, by the parabola over its chord that is nearest to its points.
-fn bulge(part: &[[f64; 2]]) -> f64 {
+pub fn bulge(part: &[[f64; 2]]) -> f64 {
     let (from, to) = (part[0], part[part.len() - 1]);
     let size = length(from, to);
     if part.len() < 4 || size == 0.0 {

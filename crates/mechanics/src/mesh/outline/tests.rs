@@ -162,17 +162,13 @@ fn bad_outlines_are_refused_in_words() {
 }
 
 #[test]
-fn lost_markers_at_an_edge_are_told() {
-    let full = Outline::of_points(&grid(|_| true)).unwrap();
-    assert!(full.doubts.is_empty(), "{:?}", full.doubts);
-    // A row of ten lost at the lower edge.
-    let notched = grid(|[x, y]| y > 0.0 || !(50.0..100.0).contains(&x));
-    let traced = Outline::of_points(&notched).unwrap();
-    assert!(
-        traced.doubts[0].contains("steps of less than"),
-        "{:?}",
-        traced.doubts
-    );
+fn a_row_of_markers_lost_at_an_edge_is_bridged() {
+    let lost = grid(|[x, y]| y > 0.0 || !(50.0..100.0).contains(&x));
+    for points in [grid(|_| true), lost] {
+        let traced = Outline::of_points(&points).unwrap();
+        assert!(traced.doubts.is_empty(), "{:?}", traced.doubts);
+        assert!((traced.outline.area() - 7500.0).abs() < 1e-9);
+    }
 }
 
 #[test]
@@ -319,6 +315,74 @@ fn scattered_markers_have_four_sides() {
             let [low, high] =
                 crate::statistics::extremes(nodes.iter().map(|node| mesh.nodes[*node][axis]));
             assert!(high - low > 0.5 * extent, "{seed} {side}: {low} {high}");
+        }
+    }
+}
+
+/// Points of a grid turned by some degrees, or scattered, that a shape about the origin holds; their spacing is 1.
+fn turned_or_scattered(
+    degrees: Option<f64>,
+    seed: u64,
+    holds: impl Fn([f64; 2]) -> bool,
+) -> Vec<[f64; 2]> {
+    use rand::{RngExt, SeedableRng};
+    let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(seed);
+    let mut drawn = || random.random::<f64>();
+    let all = (-60..=60).flat_map(|i| (-60..=60).map(move |j| [i, j].map(f64::from)));
+    let shift = [drawn(), drawn()];
+    let (sine, cosine) = degrees.unwrap_or_default().to_radians().sin_cos();
+    let placed = all.map(|[x, y]| match degrees {
+        Some(_) => [
+            cosine * x - sine * y + shift[0],
+            sine * x + cosine * y + shift[1],
+        ],
+        None => [120.0 * (drawn() - 0.5), 120.0 * (drawn() - 0.5)],
+    });
+    placed.filter(|point| holds(*point)).collect()
+}
+
+/// Grids end in steps at an edge that they are turned against, and scattered markers at any.
+#[test]
+fn rectangles_under_turned_or_scattered_markers_have_four_straight_sides() {
+    let size = [60.0, 24.0];
+    let holds = |point: [f64; 2]| (0..2).all(|axis| point[axis].abs() <= size[axis] / 2.0);
+    let turns = [0.0, 0.5, 2.0, 5.0, 8.0, 20.0, 33.0, 45.0].map(Some);
+    let (mut four, mut all) = (0, 0);
+    for degrees in turns.into_iter().chain([None]) {
+        for seed in 0..6 {
+            let points = turned_or_scattered(degrees, seed, holds);
+            let outer = Outline::of_points(&points).unwrap().outline.outer;
+            all += 1;
+            if outer.len() != 4 {
+                continue;
+            }
+            four += 1;
+            // No corner is farther off than the markers are apart, and two where they are scattered.
+            let most = if degrees.is_some() { 1.5 } else { 3.0 };
+            for point in outer {
+                let off = [0, 1].map(|axis| point[axis].abs() - size[axis] / 2.0);
+                let far = off[0].abs().max(off[1].abs());
+                assert!(far < most, "{degrees:?} {seed}: {point:?}");
+            }
+        }
+    }
+    assert!(four * 10 >= all * 9, "{four} of {all}");
+}
+
+#[test]
+fn discs_under_turned_or_scattered_markers_are_round() {
+    for degrees in [Some(0.0), Some(10.0), Some(33.0), None] {
+        for (seed, radius) in (0..).zip([3.0, 5.0, 8.0, 10.0, 12.0, 15.0, 20.0, 30.0]) {
+            let holds = |[x, y]: [f64; 2]| x.hypot(y) <= radius;
+            let points = turned_or_scattered(degrees, seed, holds);
+            let outline = Outline::of_points(&points).unwrap().outline;
+            let named = format!("{degrees:?} {radius}: {:?}", outline.outer);
+            assert!(outline.outer.len() > 8, "{named}");
+            let least = radius - if degrees.is_some() { 1.3 } else { 2.6 };
+            for point in &outline.outer {
+                let far = point[0].hypot(point[1]);
+                assert!(far < radius + 1.0 && far > least, "{named}");
+            }
         }
     }
 }

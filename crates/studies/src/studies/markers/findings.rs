@@ -108,19 +108,14 @@ fn uneven_noise(_: &MarkerStudy, estimate: &FieldEstimate) -> Option<String> {
     ))
 }
 
-/// An edge that only the markers define may be the reason why the data are not explained.
-fn unknown_edge(study: &MarkerStudy, estimate: &FieldEstimate) -> Option<Doubt> {
-    let gap = decimals(study.unknown_gap?, 4);
-    (estimate.verdict.answer == Answer::NotExplained).then(|| {
-        let message = format!(
-            "the free edges are known only to within {gap} mm, because only the markers define them; with precise data even a smaller \
-             offset leads to rejection"
-        );
-        (
-            message,
-            "give the edges and holes with --outline or --mesh, or set --edge-gap if the report estimates how far the free edges lie from those of the mesh",
-        )
-    })
+/// An edge that only the markers define is the reason why the data cannot judge.
+fn unknown_edge(_: &MarkerStudy, estimate: &FieldEstimate) -> Option<Doubt> {
+    let gap = estimate.unknown_edges()?;
+    let message = format!(
+        "the free edges are known only to within {} mm, because only the markers define them, and precise data contradict even a slightly inclined edge",
+        decimals(gap, 4)
+    );
+    Some((message, "give the edges and holes with --outline or --mesh"))
 }
 
 fn contradicted_edges(study: &MarkerStudy, estimate: &FieldEstimate) -> Option<Doubt> {

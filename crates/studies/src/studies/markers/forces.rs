@@ -29,6 +29,7 @@ pub fn farther_out(estimate: &FieldEstimate, force: &Estimate) -> Option<f64> {
 pub fn reason(estimate: &FieldEstimate) -> &'static str {
     match estimate.verdict.answer {
         Answer::NotExplained => "not explained",
+        _ if estimate.unknown_edges().is_some() => "the free edges are not known well enough",
         _ => "the noise is that of gross errors",
     }
 }

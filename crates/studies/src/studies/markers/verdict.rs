@@ -164,7 +164,7 @@ const EXPLANATION: &str = "Explained: the residuals of the markers are white noi
     between neighbours as noise of image correlation does, with the length at which the correlation has fallen to 1/e; the \
     intervals include that. The data cannot judge: the residuals correlate so far that they are worth fewer than a hundred independent \
     values, too few to tell noise from a misfit; intervals take them for noise of the widest correlation that they allow. Or gross errors \
-    make up the noise; then there are no intervals. Not explained: an alternative model reduces the misfit by more than noise could, \
+    make up the noise, or only the markers show the free edges, which they contradict; then there are no intervals. Not explained: an alternative model reduces the misfit by more than noise could, \
     the residuals correlate between neighbours and are similar from frame to frame, or a measured force is contradicted. Standard \
     errors and intervals are then meaningless and are not given.";
 
