@@ -62,18 +62,40 @@ fn mistakes_in_a_file_are_named_first_and_once() {
     assert!(!printed.contains("the field seems to be"), "{printed}");
 }
 
-/// A plate that is pushed by half of its length between rigid grips buckles: there is no field to judge.
-#[test]
-fn a_reversed_sign_is_named_where_no_equilibrium_is_near() {
+/// The error on a field without solution, with free long edges and more options.
+fn error_without_solution(table: &str, more: &[&str]) -> String {
     let folder = TempDir::new().unwrap();
+    fs::write(folder.path().join("plate.csv"), table).unwrap();
+    let usual = "correct plate.csv --free top,bottom --thickness";
+    let arguments: Vec<&str> = usual.split(' ').chain(["2 mm"]).collect();
+    let done = gelbench(folder.path(), &[&arguments, more].concat()).code(2);
+    one_line(&done.get_output().stderr)
+}
+
+/// A plate that is pushed by half of its length between rigid grips buckles, and a free one that widens as it is pulled is none: there is no
+/// field to judge.
+#[test]
+fn mistakes_are_named_where_no_equilibrium_is_near() {
     let text = changed(&second_frame(|_| true), reversed);
-    fs::write(folder.path().join("plate.csv"), text).unwrap();
-    let arguments = "correct plate.csv --material pva-10 --robust tukey --rigid left,right --free top,bottom --thickness";
-    let arguments: Vec<&str> = arguments.split(' ').chain(["2 mm"]).collect();
-    let done = gelbench(folder.path(), &arguments).code(2);
-    let message = one_line(&done.get_output().stderr);
-    let expected = "the field has no solution, but seems to be displacements with reversed sign";
-    assert!(message.contains(expected), "{message}");
+    let plate = "--material pva-10 --robust tukey --rigid left,right";
+    let plate: Vec<&str> = plate.split(' ').collect();
+    let positions = (0..21 * 9).map(|k| [5.0 * f64::from(k / 9), 5.0 * f64::from(k % 9)]);
+    let strip = positions.map(|[x, y]| {
+        format!(
+            "{x},{y},{},{}\n",
+            -0.3 * x,
+            (1.3_f64.sqrt().recip() - 1.0) * y
+        )
+    });
+    let strip = "x [mm],y [mm],ux [mm],uy [mm]\n".to_owned() + &strip.collect::<String>();
+    for (table, more, seems) in [
+        (&text, &plate[..], "displacements with reversed sign"),
+        (&strip, &["--material", "neo-hooke"], "mirrored along x"),
+    ] {
+        let message = error_without_solution(table, more);
+        let expected = format!("the field has no solution, but seems to be {seems}");
+        assert!(message.contains(&expected), "{message}");
+    }
 }
 
 /// Where nothing is said of the edges, any field is explained by edges of unknown motion.

@@ -100,7 +100,8 @@ impl Conditions {
         Error::refuse(faults)
     }
 
-    /// Leaves out the forces in frames at rest, and checks whether the others suit a mesh and a series.
+    /// Leaves out the forces in frames at rest, takes edges with a measured force and no condition as loaded in an unknown way, and checks
+    /// whether all suits a mesh and a series.
     ///
     /// # Errors
     /// [`Error::Input`] with what does not.
@@ -108,6 +109,12 @@ impl Conditions {
         let is_kept =
             |frame: &Option<usize>| frame.is_none_or(|number| !series.at_rest.contains(&number));
         self.forces.retain(|(frame, _)| is_kept(frame));
+        for (_, force) in &self.forces {
+            if !self.edges.iter().any(|(name, _)| *name == force.edge) {
+                self.edges
+                    .push((force.edge.clone(), EdgeCondition::Unknown));
+            }
+        }
         self.check(mesh)?;
         self.check_frames(series)
     }

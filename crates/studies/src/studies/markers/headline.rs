@@ -106,12 +106,14 @@ fn forces(study: &MarkerStudy, estimates: &[FieldEstimate]) -> Block {
     Block::Table(head, rows.collect())
 }
 
-/// A force, zero where it is nothing beside the frame's largest.
+/// A force, zero where it is nothing beside the frame's largest and its interval does not exclude that.
 fn figure(estimate: &FieldEstimate, force: &Estimate) -> String {
     let all = estimate.forces.iter().flat_map(|edge| &edge.force);
     let largest = all.fold(0.0_f64, |most, force| most.max(force.value.abs()));
+    let [low, high] = force.interval;
+    let may_be_zero = !estimate.has_intervals() || low * high <= 0.0;
     match force.value {
-        small if small.abs() <= NOTHING * largest => number(0.0),
+        small if small.abs() <= NOTHING * largest && may_be_zero => number(0.0),
         value => decimals(value, 4),
     }
 }

@@ -16,7 +16,7 @@ use rayon::prelude::*;
 use super::MarkerStudy;
 use super::quantities::{residual_rms, rounding, used};
 use crate::error::Diagnostic;
-use crate::estimation::{EdgeCondition, FieldEstimate};
+use crate::estimation::{EdgeCondition, EdgeOutcome, FieldEstimate};
 use crate::markers::{Frame, Marker};
 use crate::units::decimals;
 
@@ -182,9 +182,10 @@ fn evidence(meant: &FieldEstimate, written: &FieldEstimate) -> String {
     )
 }
 
-/// Whether a field is explained, with a free edge where the data may choose.
+/// Whether a field is explained with a free edge, stated or chosen by the data, where they may choose.
 fn is_natural(estimate: &FieldEstimate) -> bool {
-    estimate.is_explained() && has_free_edge(estimate)
+    let is_free = |edge: &EdgeOutcome| edge.condition == EdgeCondition::Free;
+    estimate.is_explained() && (has_free_edge(estimate) || estimate.edges.iter().any(is_free))
 }
 
 /// Whether one of the edges is free where the data may choose; true where they may not.
@@ -217,7 +218,13 @@ fn is_nearer(meant: &FieldEstimate, written: Option<&FieldEstimate>) -> bool {
     let Some(written) = written else {
         return is_natural(meant);
     };
-    let nearer = NEARER * residual_rms(meant) < residual_rms(written);
+    // Stated edges that are wrong explain more than a mistake that is none.
+    let trials = written.verdict.trials.iter();
+    let released = trials
+        .map(|trial| trial.residual_rms)
+        .fold(f64::INFINITY, f64::min);
+    let residual = residual_rms(meant);
+    let nearer = NEARER * residual < residual_rms(written) && residual < released;
     let is_sure = criterion(written) - criterion(meant) > SURE;
     let frees = !has_free_edge(written) && freed(meant, written).next().is_some();
     (is_sure && (nearer || is_natural(meant))) || (frees && is_natural(meant))

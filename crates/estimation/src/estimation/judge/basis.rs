@@ -1,0 +1,225 @@
+//! Alternatives tried on a basis: those of forces, stiffness, law and picture, and those of edges.
+
+use super::alternatives::{Column, Granted};
+use super::linear_model::{Model, Reference};
+use super::rows::Rows;
+use crate::error::Error;
+use crate::estimation::equations::Equations;
+use crate::estimation::input::{Edge, EdgeCondition};
+use crate::estimation::outcome::{Alternative, Contradiction, Reason, Trial};
+use crate::estimation::search::{NearestField, Scored};
+use crate::estimation::uncertainty::MovedEdge;
+use crate::statistics::CorrelatedNoise;
+
+/// Probability under noise below which an alternative contradicts the equations. Seven are tried, and smoothness is chosen by the data.
+pub const LEVEL: f64 = 1e-5;
+
+/// The conditions that an edge may have instead of a stated one.
+const OTHER_CONDITIONS: [EdgeCondition; 4] = [
+    EdgeCondition::Free,
+    EdgeCondition::Rigid,
+    EdgeCondition::Known([Some(0.0), None]),
+    EdgeCondition::Known([None, Some(0.0)]),
+];
+
+/// The basis on which alternatives are tried.
+pub struct Basis<'a> {
+    pub rows: &'a Rows,
+    pub base: &'a Model,
+    pub reference: Reference,
+}
+
+impl Basis<'_> {
+    /// What edges explain, released one by one, with other conditions, or elsewhere; and the stated conditions that are contradicted at a level,
+    /// beside the trial with all edges released.
+    pub fn of_edges(
+        &self,
+        nearest_field: &mut NearestField,
+        edges: &[Edge],
+        granted: &[Granted],
+        (together, level): (Option<Trial>, f64),
+    ) -> Result<(Vec<Trial>, Option<Contradiction>), Error> {
+        let each = self.edge_by_edge(nearest_field, edges, granted);
+        let contradiction = contradicted(together.as_ref(), &each, level);
+        let mut trials: Vec<Trial> = together.filter(|_| each.len() > 1).into_iter().collect();
+        let first = contradiction.iter().find_map(|all| all.edges.first());
+        if let Some((name, _)) = first {
+            trials.extend(self.other_conditions(nearest_field, edges, granted, name));
+        }
+        trials.extend(each);
+        let moved = nearest_field.moved_edges(edges)?.into_iter();
+        trials.extend(moved.filter_map(|edge| self.moved(nearest_field, edge)));
+        Ok((trials, contradiction))
+    }
+
+    /// Whether nothing improves the fit below a level where the outer free edges are released, which only markers show.
+    pub fn explains_all(
+        &self,
+        nearest_field: &NearestField,
+        (edges, granted): (&[Edge], &[Granted]),
+        (columns, noise): (&[Column], Option<&CorrelatedNoise>),
+        level: f64,
+    ) -> bool {
+        let is_shown = |name: &str| {
+            let mut shown = edges
+                .iter()
+                .filter(|edge| edge.has_strip() && edge.segment.outer);
+            shown.any(|edge| edge.segment.name == name)
+        };
+        let model = |goes: &dyn Fn(&str) -> bool| {
+            let scored = released(nearest_field, edges, goes)?;
+            Some(Model::of_score(self.rows, nearest_field, scored).granting(self.rows, granted))
+        };
+        let Some(loaded) = model(&is_shown) else {
+            return false;
+        };
+        let basis = Basis {
+            rows: self.rows,
+            reference: Reference::new(self.rows, noise, &loaded, None, columns),
+            base: &loaded,
+        };
+        let together = model(&|_| true);
+        let together =
+            together.map(|model| basis.try_out(nearest_field, Alternative::Edges, &model));
+        let trials = basis.try_columns(nearest_field, columns);
+        improvement(trials.iter().chain(&together), level).is_none()
+    }
+
+    /// What each of some columns explains.
+    pub fn try_columns(&self, nearest_field: &NearestField, columns: &[Column]) -> Vec<Trial> {
+        let trials = columns.iter().map(|(alternative, design)| {
+            let model = self.base.with(self.rows, [design]);
+            self.try_out(nearest_field, alternative.clone(), &model)
+        });
+        trials.collect()
+    }
+
+    pub fn try_out(
+        &self,
+        nearest_field: &NearestField,
+        alternative: Alternative,
+        model: &Model,
+    ) -> Trial {
+        Trial {
+            residual_rms: model.residual_rms(self.rows, nearest_field),
+            ..self.reference.test(alternative, model)
+        }
+    }
+
+    /// What each of the edges with a stated condition explains by itself where it is released.
+    fn edge_by_edge(
+        &self,
+        nearest_field: &NearestField,
+        edges: &[Edge],
+        granted: &[Granted],
+    ) -> Vec<Trial> {
+        let names = stated(edges).into_iter();
+        let trials = names.filter_map(|name| {
+            let scored = released(nearest_field, edges, &|other| other == name)?;
+            let model =
+                Model::of_score(self.rows, nearest_field, scored).granting(self.rows, granted);
+            Some(self.try_out(nearest_field, Alternative::Edge(name.to_owned()), &model))
+        });
+        trials.collect()
+    }
+
+    /// What an edge with a stated condition explains with each of those that it may have instead.
+    fn other_conditions(
+        &self,
+        nearest_field: &NearestField,
+        edges: &[Edge],
+        granted: &[Granted],
+        name: &str,
+    ) -> Vec<Trial> {
+        let trials = OTHER_CONDITIONS.into_iter().filter_map(|condition| {
+            let scored = with_condition(nearest_field, edges, condition, &|other| other == name)?;
+            let model =
+                Model::of_score(self.rows, nearest_field, scored).granting(self.rows, granted);
+            let edge = name.to_owned();
+            let alternative = Alternative::Condition { edge, condition };
+            Some(self.try_out(nearest_field, alternative, &model))
+        });
+        trials.collect()
+    }
+
+    /// What an edge at another position explains, and how far away it lies; `None` where the data do not determine that.
+    fn moved(&self, nearest_field: &NearestField, (part, design): MovedEdge) -> Option<Trial> {
+        let outwards = self.reference.factor(self.rows, self.base, &design)?;
+        let model = self.base.with(self.rows, [&design]);
+        Some(self.try_out(
+            nearest_field,
+            Alternative::MovedEdge { part, outwards },
+            &model,
+        ))
+    }
+}
+
+/// The alternative that contradicts the equations, if one does.
+pub fn improvement<'a>(trials: impl Iterator<Item = &'a Trial>, level: f64) -> Option<Reason> {
+    let probability = trials.map(|trial| trial.probability).fold(1.0, f64::min);
+    (probability < level).then_some(Reason::Alternative(probability))
+}
+
+/// The names of the edges with a stated condition, except those that moved in an unknown way.
+fn stated(edges: &[Edge]) -> Vec<&str> {
+    let stated = edges.iter().filter(|edge| is_stated(edge));
+    let mut names: Vec<&str> = stated.map(|edge| edge.segment.name.as_str()).collect();
+    names.sort_unstable();
+    names.dedup();
+    names
+}
+
+/// Whether the condition of an edge is stated, or is that of a hole: free.
+fn is_stated(edge: &Edge) -> bool {
+    let segment = &edge.segment;
+    let stated = segment.condition.is_some() || !segment.outer;
+    stated && !segment.inside && edge.condition != EdgeCondition::Unknown
+}
+
+/// The regression with some of the edges with stated conditions released; `None` where there are none, or where the data do not determine so much.
+pub fn released(
+    nearest_field: &NearestField,
+    edges: &[Edge],
+    goes: &dyn Fn(&str) -> bool,
+) -> Option<Scored> {
+    with_condition(nearest_field, edges, EdgeCondition::Unknown, goes)
+}
+
+/// The same with another condition of these edges; `None` too where they have it.
+fn with_condition(
+    nearest_field: &NearestField,
+    edges: &[Edge],
+    condition: EdgeCondition,
+    goes: &dyn Fn(&str) -> bool,
+) -> Option<Scored> {
+    let mut relaxed = edges.to_vec();
+    let mut any = false;
+    for edge in &mut relaxed {
+        if is_stated(edge) && goes(&edge.segment.name) {
+            any |= edge.condition != condition;
+            edge.condition = condition;
+        }
+    }
+    let search = any
+        .then(|| Equations::new(&nearest_field.equations.task, &relaxed).ok())
+        .flatten()?;
+    match condition {
+        EdgeCondition::Unknown => search.score_released(nearest_field).ok(),
+        _ => search.score(nearest_field).ok(),
+    }
+}
+
+fn contradicted(together: Option<&Trial>, each: &[Trial], level: f64) -> Option<Contradiction> {
+    let probability = together.map_or(1.0, |trial| trial.probability);
+    let named = |trial: &Trial| match &trial.alternative {
+        Alternative::Edge(name) => Some((name.clone(), trial.probability)),
+        _ => None,
+    };
+    let mut edges: Vec<(String, f64)> = each
+        .iter()
+        .filter(|trial| trial.probability < LEVEL)
+        .filter_map(named)
+        .collect();
+    edges.sort_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));
+    (probability < level).then_some(Contradiction { probability, edges })
+}
