@@ -137,7 +137,8 @@ impl Follower<'_> {
     }
 
     /// Takes away points whose displacement is far from what their neighbours' fields say there: beyond five standard deviations of these and
-    /// a tenth of a pixel (as J. Westerweel, F. Scarano, Exp. Fluids 39, 1096 (2005), with gradients). Returns how many.
+    /// a tenth of a pixel (as J. Westerweel, F. Scarano, Exp. Fluids 39, 1096 (2005), with gradients), and those of which too few neighbours are
+    /// left to tell, as where the specimen leaves the image. Returns how many.
     pub fn drop_outliers(&self, matches: &mut [Option<Match>]) -> usize {
         const FEWEST: usize = 3;
         const FAR: f64 = 5.0;
@@ -161,15 +162,16 @@ impl Follower<'_> {
                 )
             });
             let there: Vec<[f64; 2]> = there.collect();
-            there.len() >= FEWEST
-                && (0..2).any(|axis| {
-                    let mut values: Vec<f64> = there.iter().map(|u| u[axis]).collect();
-                    let middle = median(&mut values);
-                    let mut off: Vec<f64> =
-                        values.iter().map(|value| (value - middle).abs()).collect();
-                    let deviation = NORMAL * median(&mut off) + fit.covariance[(axis, axis)].sqrt();
-                    (fit.warp.displacement()[axis] - middle).abs() > FAR * deviation + SURE
-                })
+            if there.len() < FEWEST {
+                return self.neighbours[point].len() >= FEWEST;
+            }
+            (0..2).any(|axis| {
+                let mut values: Vec<f64> = there.iter().map(|u| u[axis]).collect();
+                let middle = median(&mut values);
+                let mut off: Vec<f64> = values.iter().map(|value| (value - middle).abs()).collect();
+                let deviation = NORMAL * median(&mut off) + fit.covariance[(axis, axis)].sqrt();
+                (fit.warp.displacement()[axis] - middle).abs() > FAR * deviation + SURE
+            })
         };
         let far: Vec<usize> = (0..matches.len()).filter(|point| is_far(*point)).collect();
         far.iter().for_each(|point| matches[*point] = None);

@@ -25,7 +25,7 @@ mod area;
 mod conditions;
 mod edge_place;
 mod figures;
-mod finding;
+pub(super) mod finding;
 mod findings;
 mod force_signs;
 mod forces;

@@ -15,6 +15,7 @@ use crate::markers::{Frame, Marker};
 use crate::results::{
     Block, Content, FieldFigure, Figure, Finding, Outcome, Panel, Results, Step, Table,
 };
+use crate::studies::markers::finding::runs;
 use crate::units::number;
 
 /// The `kind` of these results.
@@ -176,25 +177,20 @@ fn step(tracked: &TrackedImages, frame: &Frame) -> Step {
 /// Frames in which many points are lost.
 fn findings(tracked: &TrackedImages) -> Vec<Finding> {
     const MANY: f64 = 0.1;
-    let most = tracked
-        .series
-        .frames
-        .iter()
-        .map(|frame| frame.markers.len())
-        .max();
+    let frames = &tracked.series.frames;
+    let most = frames.iter().map(|frame| frame.markers.len()).max();
     let most = most.unwrap_or(0);
-    let few = |frame: &&Frame| ((most - frame.markers.len()) as f64) > MANY * most as f64;
-    let few: Vec<String> = tracked
-        .series
-        .frames
+    let has_few = |frame: &&Frame| ((most - frame.markers.len()) as f64) > MANY * most as f64;
+    let all: Vec<usize> = frames.iter().map(|frame| frame.number).collect();
+    let few: Vec<usize> = frames
         .iter()
-        .filter(few)
-        .map(|frame| frame.number.to_string())
+        .filter(has_few)
+        .map(|frame| frame.number)
         .collect();
     let message = || {
         format!(
             "more than a tenth of the points are lost in frame {}",
-            few.join(", ")
+            runs(&all, &few)
         )
     };
     let remedy = "look at these images: the pattern leaves them, is covered, or changes";

@@ -70,7 +70,7 @@ fn range(words: &[&str]) -> Option<String> {
 }
 
 /// Some of all numbers, those that follow each other in one: `4`, `4, 9`, `4 to 34`.
-fn runs(all: &[usize], numbers: &[usize]) -> String {
+pub fn runs(all: &[usize], numbers: &[usize]) -> String {
     let index = |number: &usize| all.iter().position(|known| known == number);
     let runs = numbers.chunk_by(|a, b| index(a).map(|index| index + 1) == index(b));
     let words = runs.map(|run| match run {
