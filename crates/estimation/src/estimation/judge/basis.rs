@@ -78,11 +78,17 @@ impl Basis<'_> {
             reference: Reference::new(self.rows, noise, &loaded, None, columns),
             base: &loaded,
         };
+        let improves = |alternative: &Alternative, model: &Model| {
+            let trial = basis.try_out(nearest_field, alternative.clone(), model);
+            improvement(std::iter::once(&trial), level).is_some()
+        };
         let together = model(&|_| true);
-        let together =
-            together.map(|model| basis.try_out(nearest_field, Alternative::Edges, &model));
-        let trials = basis.try_columns(nearest_field, columns);
-        improvement(trials.iter().chain(&together), level).is_none()
+        if together.is_some_and(|model| improves(&Alternative::Edges, &model)) {
+            return false;
+        }
+        let mut columns = columns.iter();
+        !columns
+            .any(|(alternative, design)| improves(alternative, &loaded.with(self.rows, [design])))
     }
 
     /// What each of some columns explains.

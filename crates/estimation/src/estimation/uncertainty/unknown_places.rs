@@ -16,7 +16,7 @@ use crate::estimation::search::NearestField;
 
 /// Points of an edge are so many gaps apart at least, and no more than so many parts of it lie between them.
 const APART: f64 = 8.0;
-const MOST_PARTS: f64 = 6.0;
+const MOST_PARTS: f64 = 3.0;
 
 impl NearestField<'_> {
     /// The forces of the strips beside the free edges in N/mm, and Σ in mm²; nothing where the edges are known.
