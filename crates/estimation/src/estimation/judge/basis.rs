@@ -14,6 +14,9 @@ use crate::statistics::CorrelatedNoise;
 /// Probability under noise below which an alternative contradicts the equations. Seven are tried, and smoothness is chosen by the data.
 pub const LEVEL: f64 = 1e-5;
 
+/// Free edges that lie elsewhere leave no more than so many times the residual of released ones: an edge that is loaded leaves far more.
+const ALMOST: f64 = 3.0;
+
 /// The conditions that an edge may have instead of a stated one.
 const OTHER_CONDITIONS: [EdgeCondition; 4] = [
     EdgeCondition::Free,
@@ -52,7 +55,8 @@ impl Basis<'_> {
         Ok((trials, contradiction))
     }
 
-    /// Whether nothing improves the fit below a level where the outer free edges are released, which only markers show.
+    /// Whether nothing improves the fit below a level where the outer free edges are released, which only markers show, and these lie almost
+    /// where they would explain it too.
     pub fn explains_all(
         &self,
         nearest_field: &NearestField,
@@ -78,6 +82,10 @@ impl Basis<'_> {
             reference: Reference::new(self.rows, noise, &loaded, None, columns),
             base: &loaded,
         };
+        let residual = |model: &Model| model.residual_rms(self.rows, nearest_field);
+        if residual(self.base) > ALMOST * residual(&loaded) {
+            return false;
+        }
         let improves = |alternative: &Alternative, model: &Model| {
             let trial = basis.try_out(nearest_field, alternative.clone(), model);
             improvement(std::iter::once(&trial), level).is_some()

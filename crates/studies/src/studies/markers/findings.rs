@@ -112,10 +112,11 @@ fn uneven_noise(_: &MarkerStudy, estimate: &FieldEstimate) -> Option<String> {
 fn unknown_edge(_: &MarkerStudy, estimate: &FieldEstimate) -> Option<Doubt> {
     let gap = estimate.unknown_edges()?;
     let message = format!(
-        "the free edges are known only to within {} mm, because only the markers define them, and precise data contradict even a slightly inclined edge",
+        "the free edges are known only to within {} mm, because only the markers define them, and the data contradict them where the markers end",
         decimals(gap, 4)
     );
-    Some((message, "give the edges and holes with --outline or --mesh"))
+    let remedy = "give the edges and holes with --outline or --mesh; an edge that carries load is not free: leave it out of --free";
+    Some((message, remedy))
 }
 
 fn contradicted_edges(study: &MarkerStudy, estimate: &FieldEstimate) -> Option<Doubt> {
