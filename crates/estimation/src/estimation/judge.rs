@@ -75,6 +75,7 @@ pub fn judge(
     let basis = Basis {
         reference: Reference::new(&rows, noise, &base, all.as_ref(), &columns),
         rows: &rows,
+        granted: &granted,
         base: &base,
     };
     let mut trials = basis.try_columns(nearest_field, &columns);
@@ -87,15 +88,19 @@ pub fn judge(
     let mut against = improvement(trials.iter().chain(&together), level);
     let mut unknown_edges = None;
     if let (Some(_), Some(gap)) = (against, gap)
-        && basis.explains_all(nearest_field, (edges, &granted), (&columns, noise), level)
+        && basis.explains_all(
+            nearest_field,
+            edges,
+            (&columns, noise),
+            (all.as_ref(), level),
+        )
     {
         unknown_edges = Some(Reason::UnknownEdges(gap));
         against = None;
     }
     let mut contradiction = None;
     if against.is_some() {
-        let (of_edges, contradicted) =
-            basis.of_edges(nearest_field, edges, &granted, (together, level))?;
+        let (of_edges, contradicted) = basis.of_edges(nearest_field, edges, (together, level))?;
         trials.extend(of_edges);
         contradiction = contradicted;
     }

@@ -28,6 +28,7 @@ const OTHER_CONDITIONS: [EdgeCondition; 4] = [
 /// The basis on which alternatives are tried.
 pub struct Basis<'a> {
     pub rows: &'a Rows,
+    pub granted: &'a [Granted],
     pub base: &'a Model,
     pub reference: Reference,
 }
@@ -39,15 +40,14 @@ impl Basis<'_> {
         &self,
         nearest_field: &mut NearestField,
         edges: &[Edge],
-        granted: &[Granted],
         (together, level): (Option<Trial>, f64),
     ) -> Result<(Vec<Trial>, Option<Contradiction>), Error> {
-        let each = self.edge_by_edge(nearest_field, edges, granted);
+        let each = self.edge_by_edge(nearest_field, edges);
         let contradiction = contradicted(together.as_ref(), &each, level);
         let mut trials: Vec<Trial> = together.filter(|_| each.len() > 1).into_iter().collect();
         let first = contradiction.iter().find_map(|all| all.edges.first());
         if let Some((name, _)) = first {
-            trials.extend(self.other_conditions(nearest_field, edges, granted, name));
+            trials.extend(self.other_conditions(nearest_field, edges, name));
         }
         trials.extend(each);
         let moved = nearest_field.moved_edges(edges)?.into_iter();
@@ -56,13 +56,13 @@ impl Basis<'_> {
     }
 
     /// Whether nothing improves the fit below a level where the outer free edges are released, which only markers show, and these lie almost
-    /// where they would explain it too.
+    /// where they would explain it too; beside the model with all edges released.
     pub fn explains_all(
         &self,
         nearest_field: &NearestField,
-        (edges, granted): (&[Edge], &[Granted]),
+        edges: &[Edge],
         (columns, noise): (&[Column], Option<&CorrelatedNoise>),
-        level: f64,
+        (all, level): (Option<&Model>, f64),
     ) -> bool {
         let is_shown = |name: &str| {
             let mut shown = edges
@@ -70,33 +70,39 @@ impl Basis<'_> {
                 .filter(|edge| edge.has_strip() && edge.segment.outer);
             shown.any(|edge| edge.segment.name == name)
         };
-        let model = |goes: &dyn Fn(&str) -> bool| {
-            let scored = released(nearest_field, edges, goes)?;
-            Some(Model::of_score(self.rows, nearest_field, scored).granting(self.rows, granted))
-        };
-        let Some(loaded) = model(&is_shown) else {
+        let Some(loaded) = self.released(nearest_field, edges, &is_shown) else {
             return false;
-        };
-        let basis = Basis {
-            rows: self.rows,
-            reference: Reference::new(self.rows, noise, &loaded, None, columns),
-            base: &loaded,
         };
         let residual = |model: &Model| model.residual_rms(self.rows, nearest_field);
         if residual(self.base) > ALMOST * residual(&loaded) {
             return false;
         }
+        let reference = Reference::new(self.rows, noise, &loaded, None, columns);
         let improves = |alternative: &Alternative, model: &Model| {
-            let trial = basis.try_out(nearest_field, alternative.clone(), model);
-            improvement(std::iter::once(&trial), level).is_some()
+            reference.test(alternative.clone(), model).probability < level
         };
-        let together = model(&|_| true);
-        if together.is_some_and(|model| improves(&Alternative::Edges, &model)) {
+        if all.is_some_and(|model| improves(&Alternative::Edges, model)) {
             return false;
         }
         let mut columns = columns.iter();
         !columns
             .any(|(alternative, design)| improves(alternative, &loaded.with(self.rows, [design])))
+    }
+
+    /// The model with some edges released, and what is granted.
+    fn released(
+        &self,
+        nearest_field: &NearestField,
+        edges: &[Edge],
+        goes: &dyn Fn(&str) -> bool,
+    ) -> Option<Model> {
+        let scored = released(nearest_field, edges, goes)?;
+        Some(self.model(nearest_field, scored))
+    }
+
+    /// The model of a regression, and what is granted.
+    fn model(&self, nearest_field: &NearestField, scored: Scored) -> Model {
+        Model::of_score(self.rows, nearest_field, scored).granting(self.rows, self.granted)
     }
 
     /// What each of some columns explains.
@@ -121,17 +127,10 @@ impl Basis<'_> {
     }
 
     /// What each of the edges with a stated condition explains by itself where it is released.
-    fn edge_by_edge(
-        &self,
-        nearest_field: &NearestField,
-        edges: &[Edge],
-        granted: &[Granted],
-    ) -> Vec<Trial> {
+    fn edge_by_edge(&self, nearest_field: &NearestField, edges: &[Edge]) -> Vec<Trial> {
         let names = stated(edges).into_iter();
         let trials = names.filter_map(|name| {
-            let scored = released(nearest_field, edges, &|other| other == name)?;
-            let model =
-                Model::of_score(self.rows, nearest_field, scored).granting(self.rows, granted);
+            let model = self.released(nearest_field, edges, &|other| other == name)?;
             Some(self.try_out(nearest_field, Alternative::Edge(name.to_owned()), &model))
         });
         trials.collect()
@@ -142,13 +141,11 @@ impl Basis<'_> {
         &self,
         nearest_field: &NearestField,
         edges: &[Edge],
-        granted: &[Granted],
         name: &str,
     ) -> Vec<Trial> {
         let trials = OTHER_CONDITIONS.into_iter().filter_map(|condition| {
             let scored = with_condition(nearest_field, edges, condition, &|other| other == name)?;
-            let model =
-                Model::of_score(self.rows, nearest_field, scored).granting(self.rows, granted);
+            let model = self.model(nearest_field, scored);
             let edge = name.to_owned();
             let alternative = Alternative::Condition { edge, condition };
             Some(self.try_out(nearest_field, alternative, &model))

@@ -6,7 +6,7 @@
 
 use super::polygon::{needed, turn_between};
 use super::side_lines::SideLine;
-use super::smoothing::{bulge, chord, part};
+use super::smoothing::{bulge, chord, parts};
 use crate::mesh::geometry::distance as length;
 
 /// Markers deeper than this below their chord, in spacings, are in a dent; rows that are a little uneven are not.
@@ -37,20 +37,17 @@ const CORNER: f64 = 50.0 * std::f64::consts::PI / 180.0;
 /// A closed line, the specimen to its left, with its points in dents no deeper than `deep` moved onto the chords that bridge them.
 pub fn without_dents(line: &[[f64; 2]], deep: f64, spacing: f64) -> Vec<[f64; 2]> {
     let count = line.len();
-    let left = |a: &usize, b: &usize| line[*a][0].total_cmp(&line[*b][0]);
-    let first = (0..count).min_by(left).unwrap_or_default();
+    let along_x = |a: &usize, b: &usize| line[*a][0].total_cmp(&line[*b][0]);
+    let first = (0..count).min_by(along_x).unwrap_or_default();
     let closed: Vec<[f64; 2]> = (0..=count).map(|i| line[(first + i) % count]).collect();
     let mut bridged = Vec::new();
     let mut from = 0;
     while from < count {
         // The whole closed line has no chord.
         let most = count - usize::from(from == 0);
-        let chords = (from + 2..=most)
-            .rev()
-            .map(|to| Chord::new(&closed[from..=to]));
-        let longest = chords
-            .into_iter()
-            .find(|chord| chord.is_envelope(deep, spacing));
+        let ends = (from + 2..=most).rev();
+        let mut chords = ends.map(|to| Chord::new(&closed[from..=to]));
+        let longest = chords.find(|chord| chord.is_envelope(deep, spacing));
         let chord = longest.unwrap_or_else(|| Chord::new(&closed[from..=from + 1]));
         chord.bridge(spacing, &mut bridged);
         from += chord.points.len() - 1;
@@ -126,9 +123,8 @@ fn is_step(dent: &[[f64; 2]], spacing: f64) -> bool {
 /// deeper than `deep`. `None` for any other line; sides have no point farther than `near` from the straight line between their ends.
 pub fn polygonal(line: &[[f64; 2]], [near, deep]: [f64; 2], spacing: f64) -> Option<Vec<[f64; 2]>> {
     let corners = without_flat_ones(line, needed(line, near), SIDE * near);
-    let count = corners.len();
-    let points = |edge: usize| part(line, corners[edge], corners[(edge + 1) % count]);
-    let edges: Vec<Vec<[f64; 2]>> = (0..count).map(points).collect();
+    let edges = parts(line, &corners);
+    let count = edges.len();
     let is_side = |edge: &usize| chord(&edges[*edge]) > SIDE * near;
     let sides: Vec<usize> = (0..count).filter(is_side).collect();
     let is_straight = |edge: &usize| bulge(&edges[*edge]) < STRAIGHT * near;

@@ -39,28 +39,29 @@ impl SideLine {
         (across < EVEN * spacing).then_some(line)
     }
 
-    /// The line nearest to points, in their direction; those within `ends` of the first and the last one, which may belong to a corner, do not
+    /// The line nearest to points; those within `ends` of the first and the last one, which may belong to a corner, do not
     /// count where others are three or more.
     pub fn nearest_to(row: &[[f64; 2]], ends: f64) -> Self {
         let [first, last] = [row[0], row[row.len() - 1]];
         let is_amid = |point: &&[f64; 2]| length(**point, first).min(length(**point, last)) > ends;
         let amid: Vec<[f64; 2]> = row.iter().filter(is_amid).copied().collect();
-        let (Self { centre, along }, _) = Self::through(if amid.len() > 2 { &amid } else { row });
-        let chord = Vector2::from(last) - Vector2::from(first);
-        let along = along * along.dot(&chord).signum();
-        Self { centre, along }
+        Self::through(if amid.len() > 2 { &amid } else { row }).0
     }
 
-    /// The line nearest to points, and the root mean square of their distances.
+    /// The line nearest to points, in their direction, and the root mean square of their distances.
     fn through(row: &[[f64; 2]]) -> (Self, f64) {
         let points = || row.iter().map(|point| Vector2::from(*point));
         let centre = points().sum::<Vector2<f64>>() / row.len() as f64;
         let scatter = points().map(|point| (point - centre) * (point - centre).transpose());
         let scatter = SymmetricEigen::new(scatter.sum());
-        let along = scatter.eigenvectors.column(scatter.eigenvalues.imax());
+        let along: Vector2<f64> = scatter
+            .eigenvectors
+            .column(scatter.eigenvalues.imax())
+            .into();
+        let [first, last] = [row[0], row[row.len() - 1]].map(Vector2::from);
         let line = Self {
             centre,
-            along: along.into(),
+            along: along * along.dot(&(last - first)).signum(),
         };
         let across = (scatter.eigenvalues.min().max(0.0) / row.len() as f64).sqrt();
         (line, across)

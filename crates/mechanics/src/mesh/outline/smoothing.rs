@@ -64,9 +64,7 @@ pub fn smoothed(line: &[[f64; 2]], near: f64, spacing: f64) -> Vec<[f64; 2]> {
         return plain();
     }
     let curve = closed(line, spacing);
-    let edges: Vec<Part> = (0..kept.len())
-        .map(|i| part(line, kept[i], kept[(i + 1) % kept.len()]))
-        .collect();
+    let edges = parts(line, &kept);
     let is_straight: Vec<bool> = edges
         .iter()
         .map(|edge| chord(edge) > LONG * spacing && bulge(edge) < BULGE * spacing)
@@ -138,8 +136,15 @@ fn meet_at_a_corner(before: &Part, next: &Part, spacing: f64) -> bool {
     turn > CORNER && both(SIDE, SIDE) || turn > SQUARE && (both(STRIP, END) || are_exact)
 }
 
+/// The points of a closed line from each of some to the next one.
+pub fn parts(line: &[[f64; 2]], kept: &[usize]) -> Vec<Part> {
+    let following = kept.iter().cycle().skip(1);
+    let pairs = kept.iter().zip(following);
+    pairs.map(|(from, to)| part(line, *from, *to)).collect()
+}
+
 /// The points of a closed line from one to another one.
-pub fn part(line: &[[f64; 2]], from: usize, to: usize) -> Part {
+fn part(line: &[[f64; 2]], from: usize, to: usize) -> Part {
     let count = line.len();
     let steps = (to + count - from - 1) % count + 1;
     (0..=steps)

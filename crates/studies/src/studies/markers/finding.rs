@@ -73,15 +73,19 @@ fn range(words: &[&str]) -> Option<String> {
 pub fn runs(all: &[usize], numbers: &[usize]) -> String {
     let index = |number: &usize| all.iter().position(|known| known == number);
     let runs = numbers.chunk_by(|a, b| index(a).map(|index| index + 1) == index(b));
-    let words = runs.map(|run| match run {
+    runs.map(span).collect::<Vec<_>>().join(", ")
+}
+
+/// Numbers that follow each other: `4`, `4, 9`, `4 to 34`.
+pub fn span(run: &[usize]) -> String {
+    match run {
         [first, _, .., last] => format!("{first} to {last}"),
         few => few
             .iter()
             .map(usize::to_string)
             .collect::<Vec<_>>()
             .join(", "),
-    });
-    words.collect::<Vec<_>>().join(", ")
+    }
 }
 
 #[cfg(test)]

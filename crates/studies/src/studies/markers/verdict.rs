@@ -3,6 +3,7 @@
 use serde_json::{Value, json};
 
 use super::MarkerStudy;
+use super::finding::span;
 use crate::estimation::{
     Alternative, Answer, FieldEstimate, MovedPart, NoiseCorrelation, Reason, Trial, Verdict,
 };
@@ -112,13 +113,8 @@ fn answers(study: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<String> {
 
 /// Frames with one answer, one after the other: `4`, `4, 9`, `4 to 34`, and over which lengths their noise correlates.
 fn run_words(run: &[(usize, &Verdict)], answer: Answer) -> String {
-    let numbers = match run {
-        [(first, _), .., (last, _)] if run.len() > 2 => format!("{first} to {last}"),
-        few => {
-            let few: Vec<String> = few.iter().map(|(number, _)| number.to_string()).collect();
-            few.join(", ")
-        }
-    };
+    let numbers: Vec<usize> = run.iter().map(|(number, _)| *number).collect();
+    let numbers = span(&numbers);
     let lengths = run.iter().filter_map(|(_, verdict)| verdict.correlation);
     let [low, high] = extremes(lengths.map(|one| one.length));
     match (answer, low < high) {
