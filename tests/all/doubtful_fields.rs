@@ -8,7 +8,7 @@ use rand_distr::{Distribution, StandardNormal};
 use serde_json::Value;
 use tempfile::TempDir;
 
-use crate::common::measured::{NOT_EXPLAINED, corrected, second_frame};
+use crate::common::measured::{NOT_EXPLAINED, corrected, right_force, second_frame};
 use crate::common::{gelbench, number, report_of_correction as report, root, words};
 
 /// Corrects markers of the plate of whose grips nothing is known, with free long edges.
@@ -29,19 +29,6 @@ fn loosely_corrected(text: &str, more: &[&str]) -> (String, Value) {
     let arguments = [&usual[..], &["--robust", "tukey"], more].concat();
     let done = gelbench(folder.path(), &arguments).code(0);
     (words(&done.get_output().stdout), report(folder.path()))
-}
-
-/// The force on the right edge along x with its interval.
-fn right_force(report: &Value) -> [f64; 3] {
-    let forces = report["steps"][0]["corrected"]["forces"]
-        .as_array()
-        .unwrap();
-    let force = forces
-        .iter()
-        .find(|force| force["edge"] == "right")
-        .unwrap();
-    let end = |index: usize| force["x_N"]["interval"][index].as_f64().unwrap();
-    [number(force, &["x_N", "value"]), end(0), end(1)]
 }
 
 /// The plate's force in frame 2 in N, by converged finite elements.
@@ -350,53 +337,4 @@ fn cells_that_are_given_are_not_made_smaller() {
     let mesh = root().join("validation/measured/skin_forearm/skin_mesh.msh");
     let given = output(&["--mesh", mesh.to_str().unwrap()]);
     assert!(given.contains("leave out --refine"), "{given}");
-}
-
-/// Markers of a neo-Hookean strip of 100 mm × 40 mm × 2 mm pulled to 1.3, with noise of 0.01 mm: on a grid of 1.6 mm turned by some degrees, or
-/// anywhere; its force is 2 c10 (λ − λ⁻²) × 80 mm².
-fn strip_under(degrees: Option<f64>) -> (String, f64) {
-    const STRETCH: f64 = 1.3;
-    let mut random = ChaCha8Rng::seed_from_u64(5);
-    let mut table = "x [mm],y [mm],ux [mm],uy [mm]\n".to_owned();
-    let all = (-40..=40).flat_map(|i| (-40..=40).map(move |j| [i, j].map(f64::from)));
-    for [i, j] in all {
-        let (sine, cosine) = degrees.unwrap_or_default().to_radians().sin_cos();
-        let turned = [cosine * i - sine * j, sine * i + cosine * j].map(|x| 1.6 * x + 0.4);
-        let [x, y] = match degrees {
-            Some(_) => turned,
-            None => [0, 1].map(|_| 128.0 * (random.random::<f64>() - 0.5)),
-        };
-        if x.abs() > 50.0 || y.abs() > 20.0 {
-            continue;
-        }
-        let [mut ux, mut uy] = [(STRETCH - 1.0) * x, (STRETCH.sqrt().recip() - 1.0) * y];
-        for component in [&mut ux, &mut uy] {
-            let drawn: f64 = StandardNormal.sample(&mut random);
-            *component += 0.01 * drawn;
-        }
-        table += &format!("{x},{y},{ux},{uy}\n");
-    }
-    let stress = 2.0 * 0.05 * (STRETCH - STRETCH.powi(-2));
-    (table, 80.0 * stress)
-}
-
-#[test]
-fn right_fields_are_not_refuted_because_a_grid_is_turned_or_markers_lie_anywhere() {
-    for degrees in [Some(2.0), Some(8.0), Some(20.0), Some(45.0), None] {
-        let (text, expected) = strip_under(degrees);
-        let folder = TempDir::new().unwrap();
-        fs::write(folder.path().join("plate.csv"), text).unwrap();
-        let usual = "correct plate.csv --material neo-hooke --free top,bottom --cell-size";
-        let words = usual.split(' ').chain(["4 mm", "--thickness", "2 mm"]);
-        let arguments: Vec<&str> = words.collect();
-        let code = gelbench(folder.path(), &arguments)
-            .get_output()
-            .status
-            .code();
-        assert!(code < Some(2), "{degrees:?}: {code:?}");
-        let [force, low, high] = right_force(&report(folder.path()));
-        let named = format!("{degrees:?}: {force} in {low} … {high}, expected {expected}");
-        assert!((force / expected - 1.0).abs() < 0.04, "{named}");
-        assert!(low < expected && expected < high, "{named}");
-    }
 }

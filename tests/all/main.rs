@@ -22,6 +22,7 @@ mod joint_parameters;
 mod keys;
 mod load_paths;
 mod marker_dialects;
+mod marker_layouts;
 mod materials;
 mod measured_fields;
 mod mesh_faults;

@@ -5,7 +5,7 @@ use std::fs;
 use serde_json::Value;
 use tempfile::TempDir;
 
-use super::{gelbench, report_of_correction as report, root, words};
+use super::{gelbench, number, report_of_correction as report, root, words};
 
 /// Frame 2 of the example's markers, those that `keep` holds of.
 pub fn second_frame(keep: impl Fn([f64; 2]) -> bool) -> String {
@@ -49,3 +49,16 @@ pub fn corrected(text: &str, more: &[&str], code: i32) -> (String, Value) {
 
 /// The exit code where the data are not explained.
 pub const NOT_EXPLAINED: i32 = 5;
+
+/// The force on the right edge along x with its interval.
+pub fn right_force(report: &Value) -> [f64; 3] {
+    let forces = report["steps"][0]["corrected"]["forces"]
+        .as_array()
+        .unwrap();
+    let force = forces
+        .iter()
+        .find(|force| force["edge"] == "right")
+        .unwrap();
+    let end = |index: usize| force["x_N"]["interval"][index].as_f64().unwrap();
+    [number(force, &["x_N", "value"]), end(0), end(1)]
+}

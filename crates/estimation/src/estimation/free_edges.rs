@@ -105,7 +105,7 @@ fn all_free<'a>(task: &Task<'a>, given: &[Edge]) -> Option<(NearestField<'a>, Ve
         return None;
     }
     let mut edges = freed(given, &open);
-    let free = nearest(task, &edges, MOST_STEPS).ok()?;
+    let mut free = nearest(task, &edges, MOST_STEPS).ok()?;
     if free.ends_at_gross_errors(&free.markers(None)) {
         return None;
     }
@@ -116,7 +116,7 @@ fn all_free<'a>(task: &Task<'a>, given: &[Edge]) -> Option<(NearestField<'a>, Ve
         let scored = Equations::new(task, &loaded).ok()?;
         let scored = scored.score_released(&free).ok()?;
         let loaded = (&scored.fit, &scored.linear.design, &scored.variances);
-        let probability = probability(loaded, &free, (&edges, level));
+        let probability = probability(loaded, &mut free, (&edges, level)).ok()?;
         edges[index].probability = Some(probability);
         if probability < level {
             return None;
@@ -144,10 +144,11 @@ fn from_loaded<'a>(
             continue;
         }
         // Where no equilibrium with the free edge is found, the edge is not free.
-        let trial = nearest_from(task, &freed, TRIAL_STEPS, &nearest_field);
-        let probability = trial.as_ref().map_or(0.0, |trial| {
-            probability(nearest_field.fitted(), trial, (&freed, level))
-        });
+        let mut trial = nearest_from(task, &freed, TRIAL_STEPS, &nearest_field);
+        let probability = match &mut trial {
+            Ok(trial) => probability(nearest_field.fitted(), trial, (&freed, level))?,
+            Err(_) => 0.0,
+        };
         edges[index].probability = Some(probability);
         if let (Ok(trial), true) = (trial, probability >= level) {
             edges[index].condition = EdgeCondition::Free;
@@ -172,7 +173,7 @@ fn from_free<'a>(
         let Ok(trial) = nearest_from(task, &released, TRIAL_STEPS, &nearest_field) else {
             continue;
         };
-        let probability = probability(trial.fitted(), &nearest_field, (&edges, level));
+        let probability = probability(trial.fitted(), &mut nearest_field, (&edges, level))?;
         if probability < level {
             (edges, nearest_field) = (released, trial);
         }
@@ -202,30 +203,33 @@ fn settle<'a>(
 }
 
 /// The probability that noise alone increases the misfit by so much when a free edge is taken as free; where that is below a level, that noise
-/// and the mesh's own error do.
+/// and what is granted do: the mesh's own error, and edges that only markers show.
 fn probability(
     (loaded, design, variances): (&Fit, &DMatrix<f64>, &VarianceComponents),
-    free: &NearestField,
+    free: &mut NearestField,
     (edges, level): (&[Edge], f64),
-) -> f64 {
+) -> Result<f64, Error> {
     let count = loaded.residual.len() as f64;
     let more = (loaded.effective - free.fit.effective).max(1.0);
     let rest = (count - loaded.effective).max(1.0);
+    let rounding = free.rounding(variances).max(f64::MIN_POSITIVE);
     let of_misfits = |before: f64, after: f64| {
-        let noise = before.max(free.rounding(variances)).max(f64::MIN_POSITIVE);
+        let noise = before.max(rounding);
         let ratio = (after - before).max(0.0) / more / (noise / rest);
         f_tail([more, rest], ratio)
     };
     let [before, after] = [loaded, &free.fit].map(|fit| free.misfit(fit, variances));
     let probability = of_misfits(before, after);
     if probability >= level {
-        return probability;
+        return Ok(probability);
     }
-    let by_mesh = |fit, design| free.misfit_by_mesh(edges, (fit, design), variances);
-    of_misfits(
-        before - by_mesh(loaded, design),
-        after - by_mesh(&free.fit, &free.linear.design),
-    )
+    let mesh_error = free.mesh_error(edges).cloned();
+    let granted = free.granted(edges, mesh_error.as_ref())?;
+    let by_granted = |fit, design| free.granted_misfit(&granted, (fit, design), variances);
+    Ok(of_misfits(
+        before - by_granted(loaded, design),
+        after - by_granted(&free.fit, &free.linear.design),
+    ))
 }
 
 impl NearestField<'_> {

@@ -16,6 +16,9 @@ const MOST_SPANS: usize = 12;
 /// Markers' spacings in a span.
 const SPACINGS: f64 = 1.5;
 
+/// An edge farther than so many spacings from the nearest smooth curve, in the mean square, is not smooth.
+const UNEVEN: f64 = 0.05;
+
 /// A coefficient of a spline along one axis: a parameter, or an unknown of the field that another part moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Coefficient {
@@ -43,9 +46,20 @@ enum Part {
         spline: BSpline,
         /// Along one axis and the other.
         coefficients: [Vec<Coefficient>; 2],
-        /// The nodes that the edge moves, with their places on 0…1.
-        nodes: Vec<(usize, f64)>,
+        nodes: Vec<SmoothNode>,
+        /// The first parameter of the gradient G₁₁, G₁₂, G₂₁, G₂₂ by which nodes beside the smooth curve move otherwise than it does.
+        gradient: Option<usize>,
     },
+}
+
+/// A node that a smooth edge moves.
+#[derive(Clone, Debug)]
+struct SmoothNode {
+    node: usize,
+    /// On 0…1.
+    position: f64,
+    /// From the smooth curve that is nearest to the edge, in mm.
+    offset: [f64; 2],
 }
 
 /// The displacements of all edges that are not free, as a function u_B(p) of parameters p in mm and rad.
@@ -133,7 +147,8 @@ impl EdgeMotion {
         });
     }
 
-    /// A smooth edge, whose displacement may be singular at its ends.
+    /// A smooth edge, whose displacement may be singular at its ends. A spline of the arc is no uniform deformation where the edge is not as
+    /// smooth as that, as one that follows markers: u = Σ qₖBₖ + G (X − Σ xₖBₖ), with the nearest curve Σ xₖBₖ.
     fn smooth(&mut self, segment: &Segment, singular: [bool; 2], spacing: f64, moved: &mut Movers) {
         let length = segment.length();
         let edges = segment.nodes.len() - 1;
@@ -156,13 +171,24 @@ impl EdgeMotion {
             coefficients.push(end(self, last));
             coefficients
         });
-        let along = segment.nodes.iter().zip(&segment.positions);
-        let nodes = along.map(|(node, position)| (*node, position / length));
+        let along: Vec<f64> = segment.positions.iter().map(|arc| arc / length).collect();
+        let points: Vec<[f64; 2]> = segment.nodes.iter().map(|n| self.positions[*n]).collect();
+        let offsets = offsets(&spline, &along, &points).unwrap_or(vec![[0.0; 2]; along.len()]);
+        let square: f64 = offsets.iter().flatten().map(|offset| offset * offset).sum();
+        let is_uneven = square > (UNEVEN * spacing).powi(2) * offsets.len() as f64;
+        let gradient = is_uneven.then(|| self.take(4));
+        let nodes = segment.nodes.iter().zip(along).zip(offsets);
+        let nodes = nodes.map(|((node, position), offset)| SmoothNode {
+            node: *node,
+            position,
+            offset,
+        });
         self.parts.push(Part::Smooth {
             name: segment.name.clone(),
             spline,
             coefficients,
             nodes: nodes.collect(),
+            gradient,
         });
     }
 
@@ -194,14 +220,17 @@ impl EdgeMotion {
                     spline,
                     coefficients,
                     nodes,
+                    gradient,
                     ..
                 } => {
                     for axis in [0, 1] {
                         let q = combinations(&unknowns, &coefficients[axis], p);
-                        for (node, position) in nodes {
-                            unknowns.entry(2 * node + axis).or_insert_with(|| {
-                                Combination::sum(&q, spline.derivatives(*position, 0))
-                            });
+                        let slopes = gradient.map(|first| {
+                            [0, 1].map(|j| Combination::parameter(first + 2 * axis + j, p))
+                        });
+                        for node in nodes {
+                            let unknown = unknowns.entry(2 * node.node + axis);
+                            unknown.or_insert_with(|| node.moved(spline, &q, &slopes));
                         }
                     }
                 }
@@ -270,6 +299,41 @@ impl EdgeMotion {
         }
         all
     }
+}
+
+impl SmoothNode {
+    /// The displacement along one axis, by the spline's coefficients and the gradient's.
+    fn moved(
+        &self,
+        spline: &BSpline,
+        q: &[Combination],
+        gradient: &Option<[Combination; 2]>,
+    ) -> Combination {
+        let mut moved = Combination::sum(q, spline.derivatives(self.position, 0));
+        for (slope, offset) in gradient.iter().flatten().zip(self.offset) {
+            moved.add(offset, slope);
+        }
+        moved
+    }
+}
+
+/// How far points lie from the spline that begins and ends at theirs and is nearest to the others; `None` where it fits them all.
+fn offsets(spline: &BSpline, along: &[f64], points: &[[f64; 2]]) -> Option<Vec<[f64; 2]>> {
+    let (count, last) = (spline.count(), points.len() - 1);
+    let mut values = DMatrix::zeros(points.len(), count);
+    for (row, position) in along.iter().enumerate() {
+        for (index, value) in spline.derivatives(*position, 0) {
+            values[(row, index)] = value;
+        }
+    }
+    let mut rest = DMatrix::from_fn(points.len(), 2, |row, axis| points[row][axis]);
+    for (column, end) in [(0, 0), (count - 1, last)] {
+        rest -= values.column(column) * DMatrix::from_row_slice(1, 2, &points[end]);
+    }
+    let inner = values.columns(1, count - 2);
+    let factor = inner.tr_mul(&inner).cholesky()?;
+    rest -= inner * factor.solve(&inner.tr_mul(&rest));
+    Some(rest.row_iter().map(|row| [row[0], row[1]]).collect())
 }
 
 /// Records that nodes are moved along an axis by whatever came first.

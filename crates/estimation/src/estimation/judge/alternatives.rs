@@ -10,8 +10,6 @@ use nalgebra::DMatrix;
 
 use crate::error::Error;
 use crate::estimation::equations::nodal_areas;
-use crate::estimation::input::Edge;
-use crate::estimation::mesh_error::{MESH_ERROR_FACTOR, MeshError};
 use crate::estimation::outcome::Alternative;
 use crate::estimation::search::NearestField;
 use crate::material::sheet::{Kinematics, PlaneTensor, cofactor};
@@ -22,14 +20,6 @@ pub type Column = (Alternative, DMatrix<f64>);
 
 /// Several stresses of a cell at its centre, from the kinematics at a point.
 type StressesAt<'a> = dyn Fn(usize, [f64; 2], &Kinematics) -> Vec<PlaneTensor> + 'a;
-
-/// A change that is no alternative to the equations, because it is known to be possible.
-pub struct Granted {
-    /// The displacements of the markers due to its parameters: two rows per marker.
-    pub design: DMatrix<f64>,
-    /// The standard deviation of its parameters; `None` where they may have any value.
-    pub deviation: Option<f64>,
-}
 
 impl NearestField<'_> {
     /// The alternatives of forces, stiffness, law and picture, with all edges as they are.
@@ -50,36 +40,6 @@ impl NearestField<'_> {
             columns.push((Alternative::Scale, self.magnification()));
         }
         Ok(columns)
-    }
-
-    /// The changes that what is known admits: a picture of another scale, the mesh's own error, and free edges up to the gap away from those of
-    /// the mesh.
-    pub(super) fn granted(
-        &mut self,
-        edges: &[Edge],
-        mesh_error: Option<&MeshError>,
-    ) -> Result<Vec<Granted>, Error> {
-        let knowledge = self.equations.task.knowledge;
-        let stated = knowledge.scale_deviation > 0.0;
-        let scale = stated.then(|| Granted {
-            design: self.magnification(),
-            deviation: None,
-        });
-        let mut all: Vec<Granted> = scale.into_iter().collect();
-        all.extend(mesh_error.map(|error| Granted {
-            design: DMatrix::from_column_slice(error.markers.len(), 1, &error.markers),
-            deviation: Some(MESH_ERROR_FACTOR),
-        }));
-        let (strips, squares) = self.unknown_places(edges);
-        if !strips.is_empty() {
-            let independent = squares.cholesky().map(|factor| factor.l());
-            let designs = self.marker_changes(&strips)?;
-            all.extend(independent.map(|factor| Granted {
-                design: designs * factor,
-                deviation: Some(1.0),
-            }));
-        }
-        Ok(all)
     }
 
     /// Forces along x and along y with smooth densities.

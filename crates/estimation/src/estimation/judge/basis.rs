@@ -1,6 +1,6 @@
 //! Alternatives tried on a basis: those of forces, stiffness, law and picture, and those of edges.
 
-use super::alternatives::{Column, Granted};
+use super::alternatives::Column;
 use super::linear_model::{Model, Reference};
 use super::rows::Rows;
 use crate::error::Error;
@@ -8,7 +8,7 @@ use crate::estimation::equations::Equations;
 use crate::estimation::input::{Edge, EdgeCondition};
 use crate::estimation::outcome::{Alternative, Contradiction, Reason, Trial};
 use crate::estimation::search::{NearestField, Scored};
-use crate::estimation::uncertainty::MovedEdge;
+use crate::estimation::uncertainty::{Granted, MovedEdge};
 use crate::statistics::CorrelatedNoise;
 
 /// Probability under noise below which an alternative contradicts the equations. Seven are tried, and smoothness is chosen by the data.

@@ -2,12 +2,13 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::alternatives::{Column, Granted};
+use super::alternatives::Column;
 use super::rows::Rows;
 use crate::estimation::equations::Equations;
 use crate::estimation::outcome::{Alternative, Trial};
 use crate::estimation::regression::{Fit, VarianceComponents};
 use crate::estimation::search::{NearestField, Scored};
+use crate::estimation::uncertainty::Granted;
 use crate::statistics::{
     CorrelatedNoise, CorrelatedRegression, WhiteRegression, Whitening, f_tail,
 };

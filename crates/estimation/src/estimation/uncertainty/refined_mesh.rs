@@ -19,8 +19,8 @@ use rayon::prelude::*;
 use crate::estimation::edges::Body;
 use crate::estimation::equations::{BodyForce, Equations, Linear};
 use crate::estimation::input::{Edge, EdgeCondition};
-use crate::estimation::mesh_error::{MESH_ERROR_FACTOR, MeshError};
-use crate::estimation::regression::{Fit, VarianceComponents};
+use crate::estimation::mesh_error::MeshError;
+use crate::estimation::regression::VarianceComponents;
 use crate::estimation::search::NearestField;
 use crate::mesh::Mesh;
 use crate::problem::corner_forces::{Hold, Share, reaction_shares};
@@ -109,36 +109,6 @@ impl NearestField<'_> {
             .known_mesh_error
             .get_or_init(|| self.compute_mesh_error(edges));
         refined.as_ref()
-    }
-
-    /// The part of the misfit Σ w ω r² of a regression that the mesh's own error e may make, with one factor α for all markers beside the
-    /// parameters of the regression:
-    ///
-    /// ```text
-    /// max 2 α eᵀWr − α² (eᵀWe − v tᵀCt + v/4),   |α| ≤ 2,   t = −AᵀWe/v                  C, A: covariance and design
-    /// ```
-    pub fn misfit_by_mesh(
-        &self,
-        edges: &[Edge],
-        (fit, design): (&Fit, &DMatrix<f64>),
-        variances: &VarianceComponents,
-    ) -> f64 {
-        let Some(error) = self.mesh_error(edges) else {
-            return 0.0;
-        };
-        let weights = &self.observations().weights;
-        let (mut product, mut square) = (0.0, 0.0);
-        for (row, (error, residual)) in error.markers.iter().zip(&fit.residual).enumerate() {
-            let weighted = variances.weight(weights, row) * error;
-            product += weighted * residual;
-            square += weighted * error;
-        }
-        let target = self.equations.target_of(&error.markers, design, variances);
-        let fitted = variances.variance * target.dot(&(&fit.covariance * &target));
-        let prior = variances.variance / MESH_ERROR_FACTOR.powi(2);
-        let curvature = (square - fitted).max(0.0) + prior;
-        let factor = (product / curvature).clamp(-MESH_ERROR_FACTOR, MESH_ERROR_FACTOR);
-        factor * (2.0 * product - factor * curvature)
     }
 
     /// The mesh's own error, computed again even where it is known.

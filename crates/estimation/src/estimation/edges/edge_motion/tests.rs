@@ -88,3 +88,27 @@ fn a_rigid_edge_keeps_its_length() {
     let (a, b) = (position(nodes[0]), position(nodes[nodes.len() - 1]));
     assert!(((a[0] - b[0]).hypot(a[1] - b[1]) - 4.0).abs() < 1e-12);
 }
+
+/// A closed edge with steps, as one that follows a grid of markers.
+#[test]
+fn an_uneven_edge_may_deform_uniformly() {
+    let line: Vec<[f64; 2]> = (0..72)
+        .map(|k| {
+            let angle = f64::from(k) / 72.0 * std::f64::consts::TAU;
+            [angle.cos(), angle.sin()].map(|x| (10.0 * x).round())
+        })
+        .collect();
+    let outline = crate::mesh::Outline::of_lines(vec![line]).unwrap();
+    let mesh = outline.mesh(2.0, CellShape::Triangle6);
+    let parts = segments(&mesh, &[] as &[&str]).unwrap();
+    let pairs = parts.iter().map(|part| (part, EdgeCondition::Unknown));
+    let pairs: Vec<_> = pairs.collect();
+    let motion = EdgeMotion::new(&mesh, &pairs, &BTreeSet::new(), 1.0);
+    let uniform = mesh.nodes.iter();
+    let uniform = uniform.flat_map(|[x, y]| [0.3 * x + 0.1 * y, 0.05 * x - 0.12 * y]);
+    let uniform: Vec<f64> = uniform.collect();
+    let count = motion.parameters();
+    let (rows, values) = motion.at(&vec![0.0; count]).toward(&uniform, count);
+    let nearest = rows.clone().svd(true, true).solve(&values, 1e-12).unwrap();
+    assert!((rows * nearest - values).amax() < 1e-9);
+}
