@@ -17,15 +17,10 @@
 //! The exit code is 0 when all aims are met, 1 when one is not (its line says FAIL), 3 when something has no solution, and
 //! 4 when a file cannot be written.
 
-#[path = "../common/columns.rs"]
-mod columns;
-#[path = "../common/lines.rs"]
-mod lines;
 mod measure;
 mod method;
 mod opponent;
 mod reference;
-mod states;
 mod table;
 mod verdict;
 
@@ -102,7 +97,17 @@ const QUICK: usize = 250_000;
 
 fn main() -> ExitCode {
     let asked = |name: &str| std::env::args().any(|argument| argument == name);
-    lines::ended(bench(asked("--quick"), asked("--equal-accuracy")))
+    match bench(asked("--quick"), asked("--equal-accuracy")) {
+        Ok(0) => ExitCode::SUCCESS,
+        Ok(missed) => {
+            eprintln!("{missed} aims are not met: see the lines that say FAIL");
+            ExitCode::FAILURE
+        }
+        Err(error) => {
+            eprintln!("{error}");
+            ExitCode::from(error.exit_code())
+        }
+    }
 }
 
 /// All grids up to so many equal cells, and whether the climb is measured on them.
@@ -155,20 +160,21 @@ fn bench(quick: bool, equal_accuracy: bool) -> Result<usize, Error> {
         runs.extend(measured);
     }
     let rows = Row::all(&runs);
-    let columns: Vec<_> = rows.iter().map(Row::columns).collect();
-    columns::print(&columns);
+    println!("\n{}", table::columns(&rows).block().plain());
     let mut verdicts = Verdicts::new(&reference);
     verdicts.equal_accuracy(&runs);
     if !equal_accuracy {
         verdicts.rows(&rows);
-        verdicts.frames(&pools[0].install(|| states::frames(&problem, [180, 60], 100))?);
     }
     let missed = verdicts.print();
     let folder = Path::new(FOLDER);
     let picture = table::picture(&runs);
     let picture = picture.map_err(|fault| Error::write("corrected_plate.png", fault))?;
     for (name, bytes) in [
-        ("corrected_plate.csv", columns::csv(&columns)),
+        (
+            "corrected_plate.csv",
+            table::columns(&rows).csv().into_bytes(),
+        ),
         ("corrected_plate.png", picture),
     ] {
         let path = folder.join(name);

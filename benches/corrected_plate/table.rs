@@ -3,10 +3,8 @@
 use gelbench::corrector::DifferenceScheme;
 use gelbench::output;
 use gelbench::results::Drawing;
-use gelbench_report::results::{Axis, Line, LineChart, PALETTE, Stroke};
+use gelbench_report::results::{Axis, Line, LineChart, PALETTE, Stroke, Table};
 
-use super::columns::{Columns, number, ratio};
-use super::lines;
 use super::measure::Run;
 use super::method::{Method, element_name, scheme_name};
 use super::opponent::Guess;
@@ -72,62 +70,64 @@ impl<'a> Row<'a> {
         seconds / self.climb.seconds
     }
 
-    /// What is printed and written: name and value.
-    pub fn columns(&self) -> Columns {
-        let climb = self.climb;
-        let equal = self.equal_accuracy[0];
-        let mesh = equal.map_or("-".to_owned(), |run| match run.method {
-            Method::FiniteElements(scheme, _) => {
-                format!("{} {}", element_name(scheme), run.layout)
+    /// Element and mesh of the finite elements of equal accuracy.
+    fn equal_mesh(&self) -> String {
+        match self.equal_accuracy[0].map(|run| (run.method, &run.layout)) {
+            Some((Method::FiniteElements(scheme, _), layout)) => {
+                format!("{} {layout}", element_name(scheme))
             }
-            _ => unreachable!("finite elements"),
-        });
-        vec![
-            ("nodes", climb.nodes.to_string()),
-            ("grid", climb.layout.to_string()),
-            ("scheme", scheme_name(self.scheme).to_owned()),
-            ("threads", climb.threads.to_string()),
-            ("departure_percent", number(climb.departure_percent)),
-            ("force_percent", number(climb.force_percent)),
-            ("seconds", number(climb.seconds)),
-            (
-                "finite_elements_seconds",
-                number(self.same_nodes[0].seconds),
-            ),
-            (
-                "ratio_same_nodes",
-                ratio(self.ratio_same_nodes(Guess::Affine)),
-            ),
-            (
-                "ratio_same_nodes_nested",
-                ratio(self.ratio_same_nodes(Guess::Nested)),
-            ),
-            ("equal_accuracy_nodes", mesh),
-            (
-                "equal_accuracy_force_percent",
-                number(equal.map_or(f64::NAN, |run| run.force_percent)),
-            ),
-            (
-                "ratio_equal_accuracy",
-                ratio(self.ratio_equal_accuracy(Guess::Affine)),
-            ),
-            (
-                "ratio_equal_accuracy_nested",
-                ratio(self.ratio_equal_accuracy(Guess::Nested)),
-            ),
-            (
-                "difference_to_direct_percent",
-                number(climb.difference_percent),
-            ),
-            ("bytes_per_node", format!("{:.0}", climb.bytes_per_node)),
-            (
-                "finite_elements_bytes_per_node",
-                format!("{:.0}", self.same_nodes[0].bytes_per_node),
-            ),
-            ("work_units", format!("{:.1}", climb.work_units)),
-            ("same_bits_as_one_thread", climb.same_bits.to_string()),
-        ]
+            _ => "–".to_owned(),
+        }
     }
+}
+
+/// A column of figures.
+type Column = (&'static str, fn(&Row) -> f64);
+
+const FIGURES: [Column; 14] = [
+    ("departure_percent", |row| row.climb.departure_percent),
+    ("force_percent", |row| row.climb.force_percent),
+    ("seconds", |row| row.climb.seconds),
+    ("finite_elements_seconds", |row| row.same_nodes[0].seconds),
+    ("ratio_same_nodes", |row| {
+        row.ratio_same_nodes(Guess::Affine)
+    }),
+    ("ratio_same_nodes_nested", |row| {
+        row.ratio_same_nodes(Guess::Nested)
+    }),
+    ("equal_accuracy_force_percent", |row| {
+        row.equal_accuracy[0].map_or(f64::NAN, |run| run.force_percent)
+    }),
+    ("ratio_equal_accuracy", |row| {
+        row.ratio_equal_accuracy(Guess::Affine)
+    }),
+    ("ratio_equal_accuracy_nested", |row| {
+        row.ratio_equal_accuracy(Guess::Nested)
+    }),
+    ("difference_to_direct_percent", |row| {
+        row.climb.difference_percent
+    }),
+    ("bytes_per_node", |row| row.climb.bytes_per_node),
+    ("finite_elements_bytes_per_node", |row| {
+        row.same_nodes[0].bytes_per_node
+    }),
+    ("work_units", |row| row.climb.work_units),
+    ("same_bits_as_one_thread", |row| {
+        f64::from(u8::from(row.climb.same_bits))
+    }),
+];
+
+/// What is printed and written.
+pub fn columns<'a>(rows: &'a [Row]) -> Table<&'a Row<'a>> {
+    let table = Table::of(rows)
+        .column("nodes", |row| row.climb.nodes.to_string())
+        .column("grid", |row| row.climb.layout.to_string())
+        .column("scheme", |row| scheme_name(row.scheme).to_owned())
+        .column("threads", |row| row.climb.threads.to_string())
+        .column("equal_accuracy_mesh", |row| row.equal_mesh());
+    FIGURES.iter().fold(table, |table, (head, figure)| {
+        table.column(*head, |row| format!("{:.4e}", figure(row)))
+    })
 }
 
 /// One run as soon as it is measured.
@@ -193,6 +193,13 @@ fn chart(title: &str, x: &str, points: impl Fn(Method) -> Vec<[f64; 2]>) -> (Lin
 
 /// The runs that no other is both quicker and more accurate than, from the most accurate on.
 pub fn best(runs: &[Run], of: impl Fn(&Run) -> bool) -> Vec<&Run> {
-    let chosen = runs.iter().filter(|run| of(run));
-    lines::best(chosen, |run| [run.seconds, run.departure_percent])
+    let mut selected: Vec<&Run> = runs.iter().filter(|run| of(run)).collect();
+    selected.sort_by(|a, b| a.departure_percent.total_cmp(&b.departure_percent));
+    let mut quickest = f64::INFINITY;
+    selected.retain(|run| {
+        let quicker = run.seconds < quickest;
+        quickest = quickest.min(run.seconds);
+        quicker
+    });
+    selected
 }

@@ -1,11 +1,9 @@
 //! What the bench must show, each with what was measured.
 
-use super::lines::{Lines, exponent};
 use super::measure::{Run, SCHEMES};
 use super::method::{Method, scheme_name};
 use super::opponent::Guess;
 use super::reference::{PUBLISHED_FORCE, Reference};
-use super::states::Frames;
 use super::table::{Row, best};
 use gelbench::corrector::DifferenceScheme;
 
@@ -17,9 +15,9 @@ fn is_equal(row: &Row) -> bool {
     row.climb.layout.grading == 1.0
 }
 
-/// All lines.
+/// Lines that pass or fail, each with what was measured.
 pub struct Verdicts {
-    lines: Lines,
+    lines: Vec<(bool, String)>,
     error_percent: f64,
 }
 
@@ -30,14 +28,14 @@ impl Verdicts {
     pub fn new(reference: &Reference) -> Self {
         let deviation = 100.0 * (reference.force / PUBLISHED_FORCE - 1.0).abs();
         let mut verdicts = Self {
-            lines: Lines::default(),
+            lines: Vec::new(),
             error_percent: reference.error_percent,
         };
         let text = format!(
             "force of the reference: {:.6} N, {deviation:.1e} % from the published {PUBLISHED_FORCE} N (at most 1e-4 %)",
             reference.force
         );
-        verdicts.lines.put(deviation <= 1e-4, text);
+        verdicts.put(deviation <= 1e-4, text);
         verdicts
     }
 
@@ -68,7 +66,7 @@ impl Verdicts {
             worst.climb.layout,
             scheme_name(worst.scheme)
         );
-        self.lines.put(pass, text);
+        self.put(pass, text);
     }
 
     /// All that is seen from the table.
@@ -140,8 +138,7 @@ impl Verdicts {
             |row| reference_error / row.climb.departure_percent,
         );
         let same = rows.iter().all(|row| row.climb.same_bits);
-        self.lines
-            .put(same, "the same bits with one and two threads".to_owned());
+        self.put(same, "the same bits with one and two threads".to_owned());
     }
 
     /// The quickest climb of some accuracy beside the quickest finite elements, each on the best of all its grids.
@@ -181,7 +178,7 @@ impl Verdicts {
             "times faster at equal accuracy from 0.1 to 1e-4 %, against the quickest of all finite elements: {ratio:.2} (at \
              least {TIMES_FASTER}), worst at {accuracy:.0e} %"
         );
-        self.lines.put(ratio >= TIMES_FASTER, text);
+        self.put(ratio >= TIMES_FASTER, text);
     }
 
     /// The least-squares slope of ln t over ln n.
@@ -196,22 +193,33 @@ impl Verdicts {
             scheme_name(scheme),
             points.len()
         );
-        self.lines.put(slope <= 1.05, text);
+        self.put(slope <= 1.05, text);
     }
 
-    /// Grips in the hand.
-    pub fn frames(&mut self, frames: &Frames) {
-        let text = format!(
-            "frame of a plate in the hand, {} nodes: median {:.2} ms, worst {:.2} ms (at most 16 ms)",
-            frames.nodes,
-            1e3 * frames.median,
-            1e3 * frames.worst
-        );
-        self.lines.put(frames.worst <= 0.016, text);
+    fn put(&mut self, pass: bool, text: String) {
+        self.lines.push((pass, text));
     }
 
     /// Prints all lines; the number of those that fail.
     pub fn print(&self) -> usize {
-        self.lines.print()
+        println!();
+        for (pass, text) in &self.lines {
+            println!("{} {text}", if *pass { "pass" } else { "FAIL" });
+        }
+        self.lines.iter().filter(|(pass, _)| !pass).count()
     }
+}
+
+/// The least-squares slope of ln y over ln x.
+fn exponent(points: &[[f64; 2]]) -> f64 {
+    let points: Vec<[f64; 2]> = points.iter().map(|point| point.map(f64::ln)).collect();
+    let mean =
+        |axis: usize| points.iter().map(|point| point[axis]).sum::<f64>() / points.len() as f64;
+    let [x, y] = [mean(0), mean(1)];
+    let covariance: f64 = points
+        .iter()
+        .map(|point| (point[0] - x) * (point[1] - y))
+        .sum();
+    let variance: f64 = points.iter().map(|point| (point[0] - x).powi(2)).sum();
+    covariance / variance
 }

@@ -5,7 +5,7 @@ use gelbench_mechanics::material::Card;
 use gelbench_mechanics::material::HyperelasticLaw;
 use gelbench_mechanics::material::curve::{Mode, samples};
 use gelbench_mechanics::material::parameters::Parameter;
-use gelbench_report::results::digits;
+use gelbench_report::results::{Table, digits};
 
 /// Parameters, figures, stability, predictions and warnings of a fit.
 pub fn fit(fit: &Fit, tests: &[TestData]) -> String {
@@ -211,35 +211,25 @@ fn figures(fit: &Fit) -> String {
 
 fn correlation(fit: &Fit) -> String {
     let matrix = &fit.quality.correlation;
-    if fit.parameters.len() < 2 {
+    let keys: Vec<&str> = fit.parameters.iter().map(|one| one.key).collect();
+    if keys.len() < 2 {
         return String::new();
     }
-    let keys = fit.parameters.iter().map(|parameter| parameter.key);
-    // Names that are wider than a column stand as numbers above.
-    let is_wide = keys.clone().any(|key| key.len() > 8);
-    let label = |(i, key): (usize, &str)| {
-        if is_wide {
-            [i.to_string(), format!("{i} {key}")]
-        } else {
-            [key.to_owned(), key.to_owned()]
-        }
-    };
-    let labels: Vec<[String; 2]> = (1..).zip(keys).map(label).collect();
-    let names = labels.iter().map(|[_, name]| name.len());
-    let width = names.max().unwrap_or(0).max(10);
-    let mut text = format!("  {:<1$}", "correlation", width + 3);
-    text.extend(labels.iter().map(|[head, _]| format!("{head:>9}")));
-    text += "\n";
-    for (i, [_, name]) in labels.iter().enumerate() {
-        let row: String = (0..=i)
-            .map(|j| match matrix[(i, j)] {
-                known if known.is_finite() => format!("{known:>9.4}"),
-                _ => format!("{:>9}", "–"),
-            })
-            .collect();
-        text += &format!("    {name:<width$} {row}\n");
-    }
-    text
+    // Names may be wider than a column of figures.
+    let table =
+        Table::of(0..keys.len()).column("correlation", |i| format!("{} {}", i + 1, keys[*i]));
+    let table = (0..keys.len()).fold(table, |table, j| {
+        table.column((j + 1).to_string(), |i| match matrix[(*i, j)] {
+            known if known.is_finite() => format!("{known:.4}"),
+            _ => "–".to_owned(),
+        })
+    });
+    indented(table)
+}
+
+/// A table as a part of what is said of one law.
+fn indented<T>(table: Table<T>) -> String {
+    textwrap::indent(&table.block().plain(), "  ")
 }
 
 /// Nominal stresses of the usual tests; `note` says more about one of them.
@@ -249,24 +239,25 @@ pub fn curves(
     note: &dyn Fn(Option<Mode>) -> &'static str,
 ) -> String {
     let samples = samples(law, range);
-    let stretches = samples[0].points.iter();
-    let stretches: String = stretches
-        .map(|[stretch, _]| format!("{stretch:>12.3}"))
+    let stretches: Vec<f64> = samples[0]
+        .points
+        .iter()
+        .map(|[stretch, _]| *stretch)
         .collect();
-    let mut text = format!("  nominal stress [MPa] at λ, 1 + γ {stretches}\n");
-    for sample in samples {
-        let stresses: String = sample
-            .points
-            .iter()
-            .map(|[_, p]| format!("{:>12}", digits(*p, 5)))
-            .collect();
-        text += &format!(
-            "    {:<12} {:<15}  {stresses}\n",
-            sample.name(),
-            note(sample.mode)
-        );
-    }
-    text
+    let table = Table::of(samples).column("nominal stress [MPa]", |sample| {
+        let shear = if sample.mode.is_none() {
+            ", γ = λ − 1"
+        } else {
+            ""
+        };
+        format!("{}{shear} {}", sample.name(), note(sample.mode))
+    });
+    let stretches = stretches.iter().enumerate();
+    indented(stretches.fold(table, |table, (index, stretch)| {
+        table.column(format!("λ = {stretch:.3}"), |sample| {
+            digits(sample.points[index][1], 5)
+        })
+    }))
 }
 
 /// AICc, which parameters as many as points do not have.
@@ -303,37 +294,30 @@ pub fn chosen(best: &Fit, criterion: Criterion, (first, value): (&str, f64)) -> 
 
 /// The laws by their criterion.
 pub fn ranking(fits: &[Fit], reasons: &[String]) -> String {
-    let mut text = String::from(
-        "law                     parameters          AICc   RMSE [MPa]  NMAD [%]  largest rel. [%]  left out [%]  stable over the data  all parameters identifiable\n",
-    );
-    for fit in fits {
-        let quality = &fit.quality;
-        text += &format!(
-            "{:<24}{:>10}{:>14}{:>13.4e}{:>10.3}{:>18.2}{:>14}  {:<20}  {}\n",
-            fit.law.name,
-            fit.parameters.len(),
-            criterion(quality.aicc),
-            quality.rmse,
-            quality.nmad_percent,
-            quality.largest_relative_error_percent,
-            fit.protocols
-                .as_ref()
-                .map_or("–".to_owned(), |protocols| format!(
-                    "{:.2}",
-                    protocols.all_left_out_percent()
-                )),
-            if quality.is_stable() { "yes" } else { "no" },
-            if quality.is_identifiable() {
-                "yes"
-            } else {
-                "no"
-            }
-        );
-    }
-    for reason in reasons {
-        text += &format!("left out: {reason}\n");
-    }
-    text + "\n"
+    let left_out = |fit: &Fit| {
+        let percent = fit.protocols.as_ref().map(|all| all.all_left_out_percent());
+        percent.map_or("–".to_owned(), |percent| format!("{percent:.2}"))
+    };
+    let table = Table::of(fits)
+        .column("law", |fit| fit.law.name.to_owned())
+        .column("parameters", |fit| fit.parameters.len().to_string())
+        .column("AICc", |fit| criterion(fit.quality.aicc))
+        .column("RMSE [MPa]", |fit| format!("{:.4e}", fit.quality.rmse))
+        .column("NMAD [%]", |fit| format!("{:.3}", fit.quality.nmad_percent))
+        .column("largest relative error [%]", |fit| {
+            format!("{:.2}", fit.quality.largest_relative_error_percent)
+        })
+        .column("left out [%]", |fit| left_out(fit))
+        .column("stable over the data", |fit| yes(fit.quality.is_stable()))
+        .column("all parameters identifiable", |fit| {
+            yes(fit.quality.is_identifiable())
+        });
+    let reasons = reasons.iter().map(|reason| format!("left out: {reason}\n"));
+    table.block().plain() + &reasons.collect::<String>() + "\n"
+}
+
+fn yes(holds: bool) -> String {
+    (if holds { "yes" } else { "no" }).to_owned()
 }
 
 /// Refitted parameters that differ by less than this share of their standard errors are the same.

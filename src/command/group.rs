@@ -13,6 +13,7 @@ use super::progress::tell_files;
 use super::terminal::{Outcome, Printed, print, print_report, together, warn};
 use super::test_reading::ReadingArguments;
 use gelbench_base::error::Error;
+use gelbench_base::statistics::Estimate;
 use gelbench_calibration::calibration::{
     Conversion, FitSettings, Group, GroupState, Provenance, StrainColumn, TestData, Weighting,
     card_text,
@@ -20,7 +21,7 @@ use gelbench_calibration::calibration::{
 use gelbench_mechanics::material::registry::Law;
 use gelbench_report::output::{ResultFolder, write_picture};
 use gelbench_report::results::{
-    NamedGroup, PictureStyle, digits, group_json, group_picture, group_table,
+    NamedGroup, PictureStyle, Table, digits, group_json, group_picture, group_table,
 };
 
 #[derive(Args)]
@@ -162,43 +163,41 @@ fn message(groups: &[NamedGroup]) -> String {
             values(&entry.mean.parameters)
         );
     }
-    text += "  stretches         axis";
-    for entry in groups {
-        text += &format!("{:>40}", format!("{} [MPa], 95 %, spread", entry.name));
-    }
-    text += if groups.len() == 2 {
-        "        difference [MPa], 95 %\n"
-    } else {
-        "\n"
-    };
     let axes = groups[0].states.iter().map(|state| state.axis).max();
     let axes = axes.map_or(1, |last| last + 1);
     let steps = usize::from(Group::STEPS);
-    for (row, state) in groups[0].states.iter().enumerate() {
-        // The middle and the end of each protocol.
+    // The middle and the end of each protocol.
+    let rows = (0..groups[0].states.len()).filter(|row| {
         let step = row / axes % steps + 1;
-        if step != steps / 2 && step != steps {
-            continue;
-        }
-        let [x, y] = state.strains;
-        text += &format!("  {:>7.4} {:>7.4} {:>6}", 1.0 + x, 1.0 + y, state.axis + 1);
-        for entry in groups {
-            let stress = entry.states[row].stress;
-            let [low, high] = stress.estimate().interval.map(|end| digits(end, 3));
-            let (mean, between) = (digits(stress.mean, 4), digits(stress.between, 2));
-            text += &format!("{:>40}", format!("{mean} ({low} … {high}) {between}"));
-        }
-        if let [first, second] = groups {
-            let difference = first.states[row]
-                .stress
-                .difference(&second.states[row].stress);
-            let [low, high] = difference.interval.map(|end| digits(end, 3));
-            text += &format!(
-                "{:>30}",
-                format!("{} ({low} … {high})", digits(difference.value, 3))
-            );
-        }
-        text += "\n";
+        step == steps / 2 || step == steps
+    });
+    let state = |row: &usize| &groups[0].states[*row];
+    let mut table = Table::of(rows)
+        .column("stretch along x", |row| {
+            format!("{:.4}", 1.0 + state(row).strains[0])
+        })
+        .column("stretch along y", |row| {
+            format!("{:.4}", 1.0 + state(row).strains[1])
+        })
+        .column("axis", |row| (state(row).axis + 1).to_string());
+    for entry in groups {
+        table = table.column(format!("{} [MPa], 95 %, spread", entry.name), |row| {
+            let stress = entry.states[*row].stress;
+            let between = digits(stress.between, 2);
+            format!("{} {between}", with_interval(&stress.estimate(), 4))
+        });
     }
-    text
+    if let [first, second] = groups {
+        table = table.column("difference [MPa], 95 %", |row| {
+            let [first, second] = [first, second].map(|entry| &entry.states[*row].stress);
+            with_interval(&first.difference(second), 3)
+        });
+    }
+    text + &table.block().plain()
+}
+
+/// `0.0123 (0.011 … 0.014)`.
+fn with_interval(estimate: &Estimate, value_digits: i32) -> String {
+    let [low, high] = estimate.interval.map(|end| digits(end, 3));
+    format!("{} ({low} … {high})", digits(estimate.value, value_digits))
 }

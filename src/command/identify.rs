@@ -21,7 +21,7 @@ use gelbench_calibration::identification::{
     identify, law_text,
 };
 use gelbench_report::output::ResultFolder;
-use gelbench_report::results::{identification_json, identification_picture};
+use gelbench_report::results::{Table, identification_json, identification_picture};
 
 /// Memory of an instant of a recording: 2.1 kB were measured with 300,000 of them.
 const BYTES_OF_AN_INSTANT: f64 = 3000.0;
@@ -243,30 +243,18 @@ fn powers(function: &Function, unit: &str) -> String {
 
 fn curve(function: &Function, argument: &str) -> String {
     const PLACES: usize = 7;
-    let has_intervals = function
-        .at(function.basis.range[0])
-        .standard_error
-        .is_finite();
-    let mut text = format!("  {argument:>14}  {:>10}", "value");
-    if has_intervals {
-        let _ = write!(text, "  {:>10}  95 % pointwise; band", "std error");
-    }
-    text.push('\n');
-    for x in function.positions(PLACES) {
-        let estimate = function.at(x);
-        let _ = write!(
-            text,
-            "  {:>14}  {:>10}",
-            format!("{x:.3}"),
-            number(estimate.value)
-        );
-        if has_intervals {
-            let [low, high] = estimate.interval.map(number);
-            let [below, above] = function.band(x).map(number);
-            let error = number(estimate.standard_error);
-            let _ = write!(text, "  {error:>10}  {low} … {high}; {below} … {above}");
-        }
-        text.push('\n');
-    }
-    text
+    let error = function.at(function.basis.range[0]).standard_error;
+    let has_intervals = error.is_finite();
+    let ends = |[low, high]: [f64; 2]| format!("{} … {}", number(low), number(high));
+    let table = Table::of(function.positions(PLACES))
+        .column(argument, |x| format!("{x:.3}"))
+        .column("value", |x| number(function.at(*x).value))
+        .column_if(has_intervals, "standard error", |x| {
+            number(function.at(*x).standard_error)
+        })
+        .column_if(has_intervals, "95 % pointwise", |x| {
+            ends(function.at(*x).interval)
+        })
+        .column_if(has_intervals, "95 % band", |x| ends(function.band(*x)));
+    textwrap::indent(&table.block().plain(), "  ")
 }

@@ -6,8 +6,7 @@ use serde_json::{Map, Value, json};
 use super::Block;
 use crate::document::stored;
 use crate::material::Card;
-use crate::material::curve::Mode;
-use crate::material::law::HyperelasticLaw;
+use crate::material::curve::{Mode, far_end};
 use crate::material::stability::{SEARCHED, stable_range};
 
 /// The description of a material.
@@ -82,32 +81,49 @@ fn json(card: &Card) -> Value {
     })
 }
 
-/// The card of a study: law, parameters, measures, ranges, source.
+/// The card of a study.
 fn statement(card: &Card) -> Vec<Block> {
-    let law: &dyn HyperelasticLaw = &*card.law;
-    let row = |key: &str, value: String| vec![key.to_owned(), value];
+    vec![Block::Heading(2, "Material".into()), properties(card)]
+}
+
+/// A property of a material and its value.
+type Row = (String, String);
+
+fn row(property: impl Into<String>, value: impl Into<String>) -> Row {
+    (property.into(), value.into())
+}
+
+/// What a card says: law, parameters, moduli, behaviour in time, measures, ranges, source.
+pub fn properties(card: &Card) -> Block {
+    let along = match card.law.is_isotropic() {
+        true => "",
+        false => " along the first axis",
+    };
     let mut rows = vec![
-        row("card", card.name.clone()),
+        row("card", &card.name),
         row("law", format!("{}: {}", card.law_name, card.energy())),
     ];
-    let parameters = card.parameters.iter();
-    rows.extend(parameters.map(|parameter| {
+    rows.extend(card.parameters.iter().map(|parameter| {
         let (value, unit) = (parameter.value, parameter.unit());
         row(parameter.key, format!("{value} {unit}"))
     }));
-    rows.extend(
-        card.choices
-            .iter()
-            .map(|(key, name)| row(key, name.clone())),
-    );
+    rows.extend(card.choices.iter().map(|(key, name)| row(*key, name)));
     rows.extend(of_volume(card));
-    let statements = law.statements().into_iter();
+    let statements = card.law.statements().into_iter();
     rows.extend(statements.map(|(name, statement)| row(name, statement)));
     rows.extend([
         row(
             "initial Young's modulus E₀",
-            format!("{:.6} MPa", card.youngs_modulus()),
+            format!("{:.6} MPa{along}", card.youngs_modulus()),
         ),
+        row(
+            "initial shear modulus μ₀",
+            format!("{:.6} MPa", card.law.shear_modulus()),
+        ),
+    ]);
+    rows.extend(in_time(card));
+    rows.extend(of_softening(card));
+    rows.extend([
         row("calibrated range", card.describe_range()),
         row(
             "measures",
@@ -119,25 +135,27 @@ fn statement(card: &Card) -> Vec<Block> {
             ),
         ),
         row("stable (Drucker)", stable(card)),
-        row("specimen", card.specimen.clone()),
-        row("source", card.citation.clone()),
+        row("specimen", &card.specimen),
+        row("source", &card.citation),
+        row("DOI", &card.doi),
+        row("note", &card.note),
     ]);
-    for (key, value) in [("DOI", &card.doi), ("note", &card.note)] {
-        rows.extend((!value.is_empty()).then(|| row(key, value.clone())));
-    }
-    vec![
-        Block::Heading(2, "Material".into()),
-        Block::table(&["property", "value"], rows),
-    ]
+    rows.retain(|(_, value)| !value.is_empty());
+    let rows = rows
+        .into_iter()
+        .map(|(property, value)| vec![property, value]);
+    Block::table(&["property", "value"], rows)
 }
 
 /// What the card says of changes of volume, and what they make of tension.
-fn of_volume(card: &Card) -> Vec<Vec<String>> {
-    let row = |key: &str, value: String| vec![key.to_owned(), value];
+fn of_volume(card: &Card) -> Vec<Row> {
     let mut rows = Vec::new();
     if let Some(modulus) = card.bulk_modulus() {
         let modulus = format!("{modulus:.6} MPa; {}", card.law.plane_state().name());
         rows.push(row("bulk modulus κ", modulus));
+    }
+    if let Some(volume) = card.volume {
+        rows.push(row("energy of volume", volume.energy.name()));
     }
     if let Some([stretch, change]) = card.tension_by_volume() {
         let percent = 100.0 * change;
@@ -150,6 +168,67 @@ fn of_volume(card: &Card) -> Vec<Vec<String>> {
         ));
     }
     rows
+}
+
+/// Density, viscosity and relaxation, as far as the card says them.
+fn in_time(card: &Card) -> Vec<Row> {
+    let mut rows = Vec::new();
+    if let Some(density) = card.density {
+        rows.push(row("density", format!("{:.6} kg/m³", 1e12 * density)));
+    }
+    let viscosity = &card.viscosity;
+    if viscosity.shear_viscosity > 0.0 {
+        let shear = 1e6 * viscosity.shear_viscosity;
+        let shear = format!("{shear:.6} Pa·s in parallel with the law");
+        rows.push(row("shear viscosity η", shear));
+    }
+    rows.extend(viscosity.relaxation.iter().map(|term| {
+        let (share, time) = (100.0 * term.share, term.time);
+        let term = format!("{share:.4} % of the instantaneous stress in τ = {time} s");
+        row("relaxation", term)
+    }));
+    let covered = viscosity.covered;
+    for (what, range, unit) in [
+        ("times", covered.times, "s"),
+        ("rates", covered.rates, "1/s"),
+    ] {
+        if let Some([low, high]) = range {
+            let range = format!("{low:.4} to {high:.4} {unit}");
+            rows.push(row(format!("{what} of the relaxation tests"), range));
+        }
+    }
+    if !viscosity.relaxation.is_empty() {
+        let at_once = viscosity.relaxation_function(0.0);
+        rows.push(row(
+            "instantaneous stress over that of the law",
+            format!("{at_once:.6}"),
+        ));
+    }
+    rows
+}
+
+/// What unloading from some stretches dissipates, of a material that softens.
+fn of_softening(card: &Card) -> Vec<Row> {
+    let Some(softening) = card.law.softening() else {
+        return Vec::new();
+    };
+    let far = far_end(card.stretch_range) - 1.0;
+    let from = |share: f64| {
+        let state = card.law.tension([1.0, 0.0], share * far);
+        let most = state.energy;
+        let [least, _] = softening.factor(0.0, most);
+        let lost = format!(
+            "{:.4} of {:.4} kJ/m³ are dissipated, η falls to {least:.4}",
+            1e3 * softening.dissipated(most),
+            1e3 * most,
+        );
+        let stretch = 1.0 + share * far;
+        row(
+            format!("unloaded from λ = {stretch:.3} in uniaxial tension"),
+            lost,
+        )
+    };
+    [0.5, 1.0].map(from).into()
 }
 
 /// The stable stretches in the usual tests.

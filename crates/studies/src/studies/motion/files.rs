@@ -8,7 +8,7 @@ use crate::mesh::NodalField;
 use crate::results::models::CORRECTED;
 use crate::results::{
     Animation, Axis, Content, Drawing, FieldFigure, Figure, Frame, Grid, GridSeries, Line,
-    LineChart, PALETTE, Panel, Series, Stroke, csv, springs_csv,
+    LineChart, PALETTE, Panel, Stroke, Table, springs_csv,
 };
 use crate::studies::points::Probe;
 use crate::studies::series::{ModelSeries, larger_axis, stress_figures};
@@ -294,54 +294,54 @@ pub fn springs_table(sheet: &MovingSheet, motions: &Motions) -> Option<(String, 
 /// Probes, energies and the measured group's force over time, one table for each model.
 pub fn tables(sheet: &MovingSheet, motions: &Motions) -> Vec<(String, Content)> {
     let of_model = |model: &&ModelMotion| {
-        let instants = model.instants();
-        type Column = fn(&Instant) -> f64;
-        let energies: [(_, Column); 4] = [
-            ("kinetic energy", |now| now.energy.kinetic),
-            ("stored energy", |now| now.energy.stored),
-            ("viscous work", |now| now.energy.viscous_work),
-            ("external work", |now| now.energy.external_work),
-        ];
-        let energies = energies
-            .into_iter()
-            .filter(|_| model.kind != ModelKind::Corrected)
-            .map(|(name, value)| Series::new(name, "mJ", instants.iter().map(value).collect()));
-        let forces = sheet.measured_forces(model);
-        let forces = [("grip force x", 0), ("grip force y", 1)]
-            .into_iter()
-            .filter(|_| !forces.is_empty())
-            .map(|(name, axis)| {
-                let values = forces.iter().map(|force| force[axis]);
-                Series::new(name, "N", values.collect())
-            });
-        let columns: Vec<Series> = energies
-            .chain(forces)
-            .chain(of_probes(sheet, model))
-            .collect();
-        let text = csv(&model.history.times(), &columns);
+        let text = of_model(sheet, model).csv();
         let name = format!("motion_{}.csv", model.style().key);
         (name, Content::Text(text))
     };
     motions.all().iter().map(of_model).collect()
 }
 
-/// Displacements and velocities of the probes at every instant.
-fn of_probes(sheet: &MovingSheet, model: &ModelMotion) -> Vec<Series> {
-    let mut columns = Vec::new();
+/// A table with a row for each instant. `gelbench identify` reads one with the columns `extension` and `force`.
+fn of_model<'a>(sheet: &MovingSheet, model: &'a ModelMotion) -> Table<(&'a Instant, [f64; 2])> {
+    type Column = fn(&Instant) -> f64;
+    const ENERGIES: [(&str, Column); 4] = [
+        ("kinetic energy [mJ]", |now| now.energy.kinetic),
+        ("stored energy [mJ]", |now| now.energy.stored),
+        ("viscous work [mJ]", |now| now.energy.viscous_work),
+        ("external work [mJ]", |now| now.energy.external_work),
+    ];
+    type Field = fn(&Instant) -> &Vec<f64>;
+    const FIELDS: [(&str, &str, Field); 2] = [
+        ("displacement", "mm", |now| &now.displacement),
+        ("velocity", "mm/s", |now| &now.velocity),
+    ];
+    let forces = sheet.measured_forces(model);
+    let [has_energies, has_forces] = [model.kind != ModelKind::Corrected, !forces.is_empty()];
+    let forces = forces.into_iter().chain(std::iter::repeat([0.0; 2]));
+    let mut table = Table::of(model.instants().iter().zip(forces));
+    table = table.column("time [s]", |(now, _)| now.time.to_string());
+    for (head, energy) in ENERGIES {
+        table = table.column_if(has_energies, head, |(now, _)| written(energy(now)));
+    }
+    for (axis, name) in ["x", "y"].into_iter().enumerate() {
+        let head = format!("grip force {name} [N]");
+        table = table.column_if(has_forces, head, |(_, force)| written(force[axis]));
+    }
     for probe in &sheet.probes {
         for (axis, direction) in ["x", "y"].into_iter().enumerate() {
-            type Field = fn(&Instant) -> &Vec<f64>;
-            let fields: [(Field, _, _); 2] = [
-                (|now| &now.displacement, "displacement", "mm"),
-                (|now| &now.velocity, "velocity", "mm/s"),
-            ];
-            for (field, what, unit) in fields {
-                let values = model.instants().iter();
-                let values = values.map(|now| model.at(field(now), probe)[axis]);
-                let head = format!("{} {what} {direction}", probe.name);
-                columns.push(Series::new(&head, unit, values.collect()));
+            for (what, unit, field) in FIELDS {
+                let head = format!("{} {what} {direction} [{unit}]", probe.name);
+                table = table.column(head, |(now, _)| written(model.at(field(now), probe)[axis]));
             }
         }
     }
-    columns
+    table
+}
+
+/// A number with all its digits; small ones with an exponent.
+fn written(value: f64) -> String {
+    match value {
+        small if small != 0.0 && small.abs() < 1e-5 => format!("{small:e}"),
+        value => value.to_string(),
+    }
 }
