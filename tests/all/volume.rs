@@ -203,15 +203,8 @@ fn laws_of_volume_change_run_in_studies() {
         for sheet in ["plane-stress", "plane-strain"] {
             let folder = TempDir::new().unwrap();
             study(folder.path(), sheet, "poisson_ratio = 0.4");
-            let (_, parameters) = samples::CHANGING_VOLUME
-                .iter()
-                .find(|(name, _)| *name == law)
-                .unwrap();
-            fs::write(
-                folder.path().join("own.toml"),
-                samples::card(law, parameters).text,
-            )
-            .unwrap();
+            let card = samples::card(law, &samples::parameters(law));
+            fs::write(folder.path().join("own.toml"), &card.text).unwrap();
             let done = gelbench(folder.path(), &["run", "small.toml"]);
             let printed = words(&done.get_output().stdout);
             done.code(0);
@@ -223,7 +216,7 @@ fn laws_of_volume_change_run_in_studies() {
             let report = machine_report(&folder.path().join("output/small"));
             assert!(report["material"]["bulk_modulus_MPa"].as_f64().unwrap() > 0.0);
             let warnings = report["warnings"].to_string();
-            let material = samples::card(law, parameters).law;
+            let material = card.law;
             let nu = material.youngs_modulus() / (2.0 * material.shear_modulus()) - 1.0;
             let in_plane = match sheet {
                 "plane-strain" => nu / (1.0 - nu),

@@ -1,4 +1,4 @@
-//! The workbench on the desktop: `gelbench-workbench [FILE …] [--frames NUMBER] [--dark | --light]`; and on the page, which starts it itself.
+//! The workbench on the desktop: `gelbench-workbench [FILE …] [--frames NUMBER]`; and on the page, which starts it itself.
 
 #[cfg(target_arch = "wasm32")]
 fn main() {}
@@ -53,13 +53,13 @@ mod desktop {
     use std::path::Path;
     use std::process::ExitCode;
 
-    use eframe::egui::{Theme, ViewportBuilder};
+    use eframe::egui::ViewportBuilder;
     use gelbench_workbench::logic::scene::Scene;
     use gelbench_workbench::measure::Measure;
     use gelbench_workbench::views::app::Workbench;
     use gelbench_workbench::views::files::Recent;
 
-    const USAGE: &str = "gelbench-workbench [FILE …] [--frames NUMBER] [--size WIDTHxHEIGHT] [--dark | --light]\n\n\
+    const USAGE: &str = "gelbench-workbench [FILE …] [--frames NUMBER]\n\n\
         Opens the workbench with studies and cards.\n\
         --frames  pulls automatically, times this many frames, and exits";
 
@@ -67,8 +67,6 @@ mod desktop {
     struct Options {
         files: Vec<String>,
         frames: usize,
-        size: Option<[f32; 2]>,
-        theme: Option<Theme>,
     }
 
     pub fn main() -> ExitCode {
@@ -79,10 +77,9 @@ mod desktop {
                 return ExitCode::from(2);
             }
         };
-        let size = options.size.unwrap_or([1200.0, 800.0]);
         let window = eframe::NativeOptions {
             viewport: ViewportBuilder::default()
-                .with_inner_size(size)
+                .with_inner_size([1200.0, 800.0])
                 .with_title("gelbench"),
             ..Default::default()
         };
@@ -90,9 +87,6 @@ mod desktop {
             "gelbench",
             window,
             Box::new(|context| {
-                if let Some(theme) = options.theme {
-                    context.egui_ctx.set_theme(theme);
-                }
                 let mut bench = Workbench::new(&context.egui_ctx, Scene::default());
                 bench.remember(Recent::of_user());
                 for file in &options.files {
@@ -117,25 +111,11 @@ mod desktop {
         let mut options = Options::default();
         let mut arguments = arguments;
         while let Some(argument) = arguments.next() {
-            let mut value = || arguments.next().ok_or(format!("{argument} needs a value"));
             match argument.as_str() {
                 "--frames" => {
-                    options.frames = value()?.parse().map_err(|_| "--frames needs a number")?
+                    let number = arguments.next().and_then(|number| number.parse().ok());
+                    options.frames = number.ok_or("--frames needs a number")?;
                 }
-                "--size" => {
-                    let text = value()?;
-                    let parts: Vec<f32> = text
-                        .split('x')
-                        .filter_map(|part| part.parse().ok())
-                        .collect();
-                    options.size = Some(
-                        parts
-                            .try_into()
-                            .map_err(|_| "--size needs two numbers, such as 1400x900")?,
-                    );
-                }
-                "--dark" => options.theme = Some(Theme::Dark),
-                "--light" => options.theme = Some(Theme::Light),
                 option if option.starts_with("--") => {
                     return Err(format!("there is no option {option}"));
                 }

@@ -39,7 +39,7 @@ pub use import::{
 pub use interpolation::Interpolation;
 pub use nodal_field::NodalField;
 pub use outline::corners;
-pub use outline::{Outline, OutlineFault, OutlineOfPoints};
+pub use outline::{Outline, OutlineFault, OutlineOfPoints, straightened};
 pub use parts::Parts;
 pub use rounding::Polygon;
 pub use shapes::{Misfit, Rakes, Shape};

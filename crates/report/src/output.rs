@@ -23,7 +23,7 @@ pub use folder::{
 };
 pub use markdown::markdown;
 #[cfg(feature = "pictures")]
-pub use picture::{Drawn, PictureFault, picture, png};
+pub use picture::{Drawn, PictureFault, VIRIDIS, picture, png};
 
 /// The JSON Schema that `report.json` follows, whatever the kind of the study:
 ///

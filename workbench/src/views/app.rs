@@ -6,7 +6,6 @@ use std::sync::Arc;
 use eframe::egui::{self, CentralPanel, Key, KeyboardShortcut, Modifiers, Panel, Ui};
 use web_time::Instant;
 
-use super::exports::Exports;
 use super::field::Fields;
 use super::files::Files;
 #[cfg(not(target_arch = "wasm32"))]
@@ -18,7 +17,7 @@ use super::study::Studies;
 use crate::logic::background::{Background, Wake};
 use crate::logic::engine::Engine;
 use crate::logic::engine::motion::Mover;
-use crate::logic::outputs::Written;
+use crate::logic::outputs::{Writer, Written};
 use crate::logic::scene::Scene;
 use crate::logic::table::{Action, Table};
 use crate::measure::Measure;
@@ -72,7 +71,7 @@ pub struct Workbench {
     pub table: Table,
     engines: [Background<Engine>; 3],
     movers: [Background<Mover>; 3],
-    exports: Exports,
+    exports: Background<Writer>,
     files: Files,
     #[cfg(not(target_arch = "wasm32"))]
     recent: Recent,
@@ -113,7 +112,7 @@ impl Workbench {
         let mut bench = Self {
             engines: [background(), background(), background()],
             movers: [mover(), mover(), mover()],
-            exports: Exports::new(Arc::clone(&wake)),
+            exports: Background::new(Arc::clone(&wake)),
             files: Files::new(Arc::clone(&wake)),
             #[cfg(not(target_arch = "wasm32"))]
             recent: Recent::default(),
@@ -260,7 +259,7 @@ impl Workbench {
                 self.table.take(answer);
             }
         }
-        match self.exports.receive() {
+        match self.exports.answers().pop() {
             None => (),
             Some(Ok(written)) => {
                 self.message.clear();

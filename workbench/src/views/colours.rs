@@ -1,18 +1,7 @@
 //! Colours of values: dark to light, even to the eye and told apart by most people (viridis).
 
 use eframe::egui::Color32;
-
-const STOPS: [[u8; 3]; 9] = [
-    [68, 1, 84],
-    [71, 44, 122],
-    [59, 81, 139],
-    [44, 113, 142],
-    [33, 144, 141],
-    [39, 173, 129],
-    [92, 200, 99],
-    [170, 220, 50],
-    [253, 231, 37],
-];
+use gelbench_report::output::VIRIDIS;
 
 /// What no number is coloured with.
 const GREY: Color32 = Color32::from_rgb(128, 128, 128);
@@ -23,12 +12,12 @@ pub fn colour(value: f64, [low, high]: [f64; 2]) -> Color32 {
     if !share.is_finite() {
         return GREY;
     }
-    let last = STOPS.len() - 1;
+    let last = VIRIDIS.len() - 1;
     let position = share.clamp(0.0, 1.0) * last as f64;
     let before = (position as usize).min(last - 1);
     let part = position - before as f64;
     let [r, g, b] = [0, 1, 2].map(|channel| {
-        let [from, to] = [before, before + 1].map(|stop| f64::from(STOPS[stop][channel]));
+        let [from, to] = [before, before + 1].map(|stop| f64::from(VIRIDIS[stop][channel]));
         (from + part * (to - from)).round() as u8
     });
     Color32::from_rgb(r, g, b)

@@ -3,46 +3,10 @@
 use gelbench::results::Drawing;
 use gelbench_report::results::LineChart;
 
-use crate::logic::background::{Background, Wake};
-use crate::logic::engine::Fault;
-use crate::logic::outputs::{Format, Wanted, Writer, Written};
+use crate::logic::outputs::{Format, Wanted};
 
 /// An offer: its name, and what goes out.
 pub type Offer = (String, Wanted);
-
-/// What goes out, and what came of it.
-pub struct Exports {
-    writer: Background<Writer>,
-}
-
-impl Exports {
-    /// Nothing yet.
-    pub fn new(wake: Wake) -> Self {
-        Self {
-            writer: Background::new(wake),
-        }
-    }
-
-    /// Lets something go out.
-    pub fn ask(&mut self, wanted: Wanted) {
-        self.writer.ask(wanted);
-    }
-
-    /// What was written.
-    pub fn receive(&mut self) -> Option<Result<Written, Fault>> {
-        self.writer.answers().pop()
-    }
-
-    /// Whether something is being written.
-    pub fn is_busy(&self) -> bool {
-        self.writer.is_busy()
-    }
-
-    /// Stops it.
-    pub fn stop(&mut self) {
-        self.writer.stop();
-    }
-}
 
 /// A picture in every format; `what` is in the names of the offers, `name` in that of the file.
 pub fn pictures(what: &str, name: &str, drawing: &Drawing) -> Vec<Offer> {

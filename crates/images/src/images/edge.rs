@@ -2,6 +2,9 @@
 
 use std::collections::BTreeMap;
 
+use gelbench_mechanics::mesh::geometry::polygon_area;
+use gelbench_mechanics::mesh::straightened;
+
 use super::region::Region;
 
 /// Lines that enclose less than this share of the area of the largest one are specks.
@@ -20,7 +23,7 @@ impl Region {
     /// where pixels only step along a line. Specks are left out.
     pub fn edge(&self) -> Vec<Vec<Place>> {
         let steps = self.steps();
-        let lines = steps.iter().map(|line| straightened(&smoothed(line)));
+        let lines = steps.iter().map(|line| straightened(&smoothed(line), FAR));
         let mut lines: Vec<Vec<Place>> = lines.collect();
         let largest = lines.iter().map(|line| area(line)).fold(0.0, f64::max);
         lines.retain(|line| line.len() > 2 && area(line) > SPECK * largest);
@@ -63,6 +66,10 @@ impl Region {
     }
 }
 
+fn area(line: &[Place]) -> f64 {
+    polygon_area(line).abs()
+}
+
 /// The middles of the sides of a closed line, each the mean of those around; a corner between long straight sides stays where it is.
 fn smoothed(line: &[Place]) -> Vec<Place> {
     let count = line.len();
@@ -92,65 +99,10 @@ fn smoothed(line: &[Place]) -> Vec<Place> {
     positions
 }
 
-/// A closed line with fewer corners (Douglas and Peucker), divided at its two places farthest apart.
-fn straightened(line: &[Place]) -> Vec<Place> {
-    let farthest = |from: Place| {
-        let distance = |index: &usize| squared(from, line[*index]);
-        let positions = 0..line.len();
-        positions.max_by(|a, b| distance(a).total_cmp(&distance(b)))
-    };
-    let Some(first) = line.first().and_then(|position| farthest(*position)) else {
-        return Vec::new();
-    };
-    let second = farthest(line[first]).unwrap_or(first);
-    let turned = |from: usize, to: usize| {
-        let count = (to + line.len() - from) % line.len();
-        let positions = (0..=count).map(|step| line[(from + step) % line.len()]);
-        positions.collect::<Vec<Place>>()
-    };
-    let mut kept = Vec::new();
-    for (from, to) in [(first, second), (second, first)] {
-        keep(&turned(from, to), &mut kept);
-    }
-    kept
-}
-
-/// Adds the corners of an open line but for its last one.
-fn keep(line: &[Place], kept: &mut Vec<Place>) {
-    let (Some(first), Some(last)) = (line.first(), line.last()) else {
-        return;
-    };
-    let length = squared(*first, *last).sqrt();
-    let off = |position: &Place| {
-        let [dx, dy] = [0, 1].map(|axis| last[axis] - first[axis]);
-        let across = dx * (position[1] - first[1]) - dy * (position[0] - first[0]);
-        across.abs() / length
-    };
-    let inner = 1..line.len().saturating_sub(1);
-    let farthest = inner.max_by(|a, b| off(&line[*a]).total_cmp(&off(&line[*b])));
-    match farthest.filter(|index| off(&line[*index]) > FAR) {
-        Some(index) => {
-            keep(&line[..=index], kept);
-            keep(&line[index..], kept);
-        }
-        None => kept.push(*first),
-    }
-}
-
-fn squared(a: Place, b: Place) -> f64 {
-    (a[0] - b[0]).powi(2) + (a[1] - b[1]).powi(2)
-}
-
-/// The area that a closed line encloses.
-fn area(line: &[Place]) -> f64 {
-    let next = line.iter().cycle().skip(1);
-    let pairs = line.iter().zip(next);
-    let twice: f64 = pairs.map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum();
-    0.5 * twice.abs()
-}
-
 #[cfg(test)]
 mod tests {
+    use gelbench_mechanics::mesh::geometry::distance;
+
     use super::*;
 
     #[test]
@@ -180,8 +132,8 @@ mod tests {
             lines[1].len()
         );
         for corner in &rectangle {
-            let nearest = lines[0].iter().map(|position| squared(*corner, *position));
-            assert!(nearest.fold(f64::MAX, f64::min) < 4.0, "{corner:?}");
+            let nearest = lines[0].iter().map(|position| distance(*corner, *position));
+            assert!(nearest.fold(f64::MAX, f64::min) < 2.0, "{corner:?}");
         }
     }
 

@@ -38,6 +38,7 @@ mod smoothing;
 pub use corners::corners;
 pub use fault::OutlineFault;
 use polygon::Polygon;
+pub use polygon::straightened;
 
 /// Straightening moves lines by less than so many spacings.
 const STRAIGHT: f64 = 0.55;

@@ -8,6 +8,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use crate::error::Diagnostic;
 use crate::results::{Drawing, PictureFormat, PictureStyle};
 use look::Look;
+pub use look::VIRIDIS;
 
 mod animation;
 mod backend;

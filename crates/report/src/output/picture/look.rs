@@ -39,7 +39,7 @@ const BLUE_TO_YELLOW: [Colour; 9] = [
 ];
 
 /// `viridis`: from violet over green to yellow, lighter and lighter.
-const VIRIDIS: [Colour; 9] = [
+pub const VIRIDIS: [Colour; 9] = [
     [68, 1, 84],
     [71, 44, 122],
     [59, 81, 139],

@@ -17,7 +17,7 @@ fn separable(
     })
 }
 
-/// Textbook formulas of all laws of [`samples::CHANGING_VOLUME`] and of a split law.
+/// Textbook formulas of all laws of [`samples::changing_volume`] and of a split law.
 pub fn textbook() -> Vec<(&'static str, Arc<dyn HyperelasticLaw>, Principal)> {
     let law = |name: &str| {
         let cards = samples::changing_volume();
