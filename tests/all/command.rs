@@ -377,7 +377,8 @@ fn cards_are_listed_and_shown() {
     let done = gelbench(folder.path(), &["materials", "show", "pva-10"]).code(0);
     let shown = words(&done.get_output().stdout);
     assert!(
-        shown.contains("amplitude = 0.0611 MPa") && shown.contains("10.1002/jbm.b.30543"),
+        shown.contains("\namplitude                   0.0611 MPa")
+            && shown.contains("10.1002/jbm.b.30543"),
         "{shown}"
     );
     gelbench(folder.path(), &["materials", "show", "pva"]).code(2);

@@ -142,7 +142,10 @@ fn a_card_is_used_without_provenance_and_shared_with_it() {
     fs::write(folder.path().join("gel.toml"), card).unwrap();
     let shown = gelbench(folder.path(), &["materials", "show", "gel.toml"]).code(0);
     let shown = words(&shown.get_output().stdout);
-    assert!(shown.contains("range      not stated"), "{shown}");
+    assert!(
+        shown.contains("calibrated range            not stated"),
+        "{shown}"
+    );
     let checked = gelbench(folder.path(), &["materials", "check", "gel.toml"]).code(0);
     let checked = words(&checked.get_output().stdout);
     assert_eq!(checked.lines().count(), 1, "{checked}");

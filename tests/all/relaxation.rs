@@ -202,7 +202,7 @@ fn a_record_becomes_a_card_that_motions_and_pictures_take() {
     let shown = gelbench(folder.path(), &["materials", "show", "gel.toml"]).code(0);
     let shown = words(&shown.get_output().stdout);
     assert!(
-        shown.contains("measured at rates of 0.4000 to 0.4000 1/s"),
+        shown.contains("rates of the relaxation tests") && shown.contains("  0.4000 to 0.4000 1/s"),
         "{shown}"
     );
     // A motion that lasts longer and is faster than the test.

@@ -67,7 +67,7 @@ pub fn tell(bench: &Workbench, context: &Context) {
         "grip_at": bench.grip_at().map(|at| [at.x, at.y]),
         "fits": fits.map(|ranking| ranking.fits.iter().map(|fit| (&fit.law, &fit.parameters)).collect::<Vec<_>>()),
         "verdicts": frames.map(|(frames, _)| frames.iter().map(|frame| (&frame.verdict, &frame.forces)).collect::<Vec<_>>()),
-        "report": report.map(|report| (&report.title, report.passed, report.parts.len())),
+        "report": report.map(|report| (&report.title, report.passed, report.blocks.len())),
         "study": table.scene().study(),
         "stretch": table.scene().stretch(),
         "settled": table.is_settled(),

@@ -2,7 +2,7 @@
 
 use eframe::egui::{Event, MouseWheelSource, MouseWheelUnit, Rect, TouchPhase, pos2, vec2};
 use egui_kittest::kittest::Queryable;
-use gelbench_report::results::Stroke;
+use gelbench_report::results::{Block, Stroke};
 use gelbench_workbench::logic::background::Worker;
 use gelbench_workbench::logic::scene::{Grip, Model, Scene};
 use gelbench_workbench::logic::studies::{Runner, StudyQuestion};
@@ -83,13 +83,15 @@ fn warnings_of_the_command_stand_on_the_sheet() {
         let name = "study.toml".to_owned();
         let files = vec![(name.clone(), study.into_bytes())];
         let question = StudyQuestion { study: name, files };
-        let warnings = Runner.answer(&question).unwrap().told;
+        let blocks = Runner.answer(&question).unwrap().blocks;
         let [ours] = state(&bench).table.warnings() else {
             panic!("{:?}", state(&bench).table.warnings());
         };
         assert_eq!(ours.rule, rule);
         let ours = ours.to_string();
-        assert!(warnings.contains(&ours), "{ours} is not among {warnings:?}");
+        let is_ours =
+            |block: &Block| matches!(block, Block::Paragraph(text) if text.contains(&ours));
+        assert!(blocks.iter().any(is_ours), "{ours} is not among {blocks:?}");
         let sentence = bench.query_by_label(&ours);
         assert!(sentence.is_some(), "the whole sentence stands below");
     }
@@ -173,8 +175,8 @@ fn the_report_is_shown_after_a_run_with_contents_that_lead_to_its_headings() {
     bench.run_steps(60);
     let report = state(&bench).studies().report().unwrap().as_ref().unwrap();
     let title = report.title.clone();
-    let heading = report.parts.iter().rev().find_map(|part| match part {
-        gelbench_workbench::logic::report::Part::Heading(_, text) => Some(text.clone()),
+    let heading = report.blocks.iter().rev().find_map(|block| match block {
+        Block::Heading(_, text) => Some(text.clone()),
         _ => None,
     });
     let at = bench.get_all_by_label(&title).last().unwrap().rect();

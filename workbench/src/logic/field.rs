@@ -167,8 +167,10 @@ fn answer(question: &FieldQuestion) -> Result<FieldAnswer, Error> {
     let estimates = study.estimate(&|_| ())?;
     let results = results(question, &study, &estimates, begun);
     let mut report = Report::from(results);
-    for sentence in &mut report.told {
-        *sentence = settings::worded(sentence);
+    for block in &mut report.blocks {
+        if let Block::Paragraph(text) = block {
+            *text = settings::worded(text);
+        }
     }
     let frames = || study.series.frames.iter().zip(&estimates);
     for (frame, estimate) in frames() {

@@ -53,7 +53,7 @@ pub fn paths(files: &[NamedFile]) -> impl Iterator<Item = (PathBuf, Vec<u8>)> + 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::logic::report::Part;
+    use gelbench::results::Block;
 
     fn run(study: &str, text: &str, others: &[NamedFile]) -> Result<Report, Fault> {
         let study_file = (study.to_owned(), text.as_bytes().to_vec());
@@ -66,24 +66,16 @@ mod tests {
     fn a_study_from_memory_has_tables_pictures_and_fields() {
         let text = include_str!("../../../examples/nonlinear_spring.toml");
         let report = run("spring.toml", text, &[]).unwrap();
-        assert!(
-            report
-                .parts
-                .iter()
-                .any(|part| matches!(part, Part::Table(..)))
-        );
-        assert!(
-            report
-                .parts
-                .iter()
-                .any(|part| matches!(part, Part::Picture(..)))
-        );
+        let has = |kind: fn(&Block) -> bool| report.blocks.iter().any(kind);
+        assert!(has(|block| matches!(block, Block::Table(..))));
+        assert!(has(|block| matches!(block, Block::Figure(..))));
+        assert!(!report.figures.is_empty());
         let text = "kind = \"plate\"\n[plate]\ncells = [12, 4]\n[load]\nstretches = [\"20 %\"]\n[tolerances]\ndisplacement = \"5 %\"\ndeparture = \"50 %\"\nforce = \"5 %\"\n";
         let report = run("plate.toml", text, &[]).unwrap();
         assert!(
             report.files.iter().any(|(name, _)| name.ends_with(".vtu")),
             "{:?}",
-            report.told
+            report.blocks
         );
     }
 

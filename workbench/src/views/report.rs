@@ -7,14 +7,14 @@ use eframe::egui::{
     Stroke, Ui, vec2,
 };
 
-use gelbench::results::Drawing;
+use gelbench::results::{Block, Drawing};
 use gelbench_report::results::{FieldFigure, MeshFigure, PALETTE, Panel, Scale, Values};
 
 use super::chart;
 use super::colour_bar::colour_bar;
 use super::colours::{Span, colour, range};
 use super::surface::View;
-use crate::logic::report::{Part, Report};
+use crate::logic::report::Report;
 
 /// Rows of a table that are shown.
 const ROWS: usize = 200;
@@ -30,25 +30,22 @@ pub fn show(ui: &mut Ui, name: &str, report: &Report) {
         ink,
         format!("{verdict}, computed in {:.1} s", report.seconds),
     );
-    for sentence in &report.told {
-        ui.label(sentence);
-    }
-    let chosen = contents(ui, &report.parts);
-    for (number, part) in report.parts.iter().enumerate() {
+    let chosen = contents(ui, &report.blocks);
+    for (number, block) in report.blocks.iter().enumerate() {
         if chosen == Some(number) {
             ui.scroll_to_cursor(Some(Align::TOP));
         }
-        show_part(ui, &format!("{name} {number}"), part);
+        show_block(ui, &format!("{name} {number}"), block, &report.figures);
     }
 }
 
-/// The headings of a report; the number of the part that was chosen.
-fn contents(ui: &mut Ui, parts: &[Part]) -> Option<usize> {
-    let headings = parts
+/// The headings of a report; the number of the block that was chosen.
+fn contents(ui: &mut Ui, blocks: &[Block]) -> Option<usize> {
+    let headings = blocks
         .iter()
         .enumerate()
-        .filter_map(|(number, part)| match part {
-            Part::Heading(level, text) => Some((number, *level, text)),
+        .filter_map(|(number, block)| match block {
+            Block::Heading(level, text) => Some((number, *level, text)),
             _ => None,
         });
     let mut chosen = None;
@@ -63,18 +60,20 @@ fn contents(ui: &mut Ui, parts: &[Part]) -> Option<usize> {
     chosen
 }
 
-fn show_part(ui: &mut Ui, name: &str, part: &Part) {
-    match part {
-        Part::Heading(1, text) => drop(ui.heading(text)),
-        Part::Heading(_, text) => {
+fn show_block(ui: &mut Ui, name: &str, block: &Block, figures: &[Drawing]) {
+    match block {
+        Block::Heading(1, text) => drop(ui.heading(text)),
+        Block::Heading(_, text) => {
             ui.add_space(8.0);
             ui.label(RichText::new(text).strong().size(16.0));
         }
-        Part::Paragraph(text) => drop(ui.label(text)),
-        Part::Code(text) => drop(ui.monospace(text)),
-        Part::Table(head, rows) => table(ui, name, head, rows),
-        Part::Picture(drawing, caption) => {
-            picture(ui, name, drawing);
+        Block::Paragraph(text) => drop(ui.label(text)),
+        Block::Code(_, text) => drop(ui.monospace(text)),
+        Block::Table(head, rows) => table(ui, name, head, rows),
+        Block::Figure(index, caption) => {
+            if let Some(drawing) = figures.get(*index) {
+                picture(ui, name, drawing);
+            }
             ui.label(RichText::new(caption).small().weak());
         }
     }

@@ -11,7 +11,7 @@ use super::{figures, report};
 use crate::logic::background::{Background, Wake};
 use crate::logic::engine::Fault;
 use crate::logic::outputs::Wanted;
-use crate::logic::report::{Part, Report};
+use crate::logic::report::Report;
 use crate::logic::studies::{NamedFile, Runner, StudyQuestion};
 
 /// The state of the view.
@@ -95,12 +95,8 @@ impl Studies {
         let all = "everything that `gelbench run` writes".to_owned();
         let mut offers = vec![(all, Wanted::Study(self.question()))];
         let report = self.report.as_ref().and_then(|report| report.as_ref().ok());
-        let parts = report.map_or(&[][..], |report| &report.parts).iter();
-        let drawings = parts.filter_map(|part| match part {
-            Part::Picture(drawing, _) => Some(drawing),
-            _ => None,
-        });
-        for (number, drawing) in drawings.enumerate() {
+        let drawings = report.map_or(&[][..], |report| &report.figures);
+        for (number, drawing) in drawings.iter().enumerate() {
             let number = number + 1;
             let what = format!("picture {number}");
             offers.extend(exports::pictures(

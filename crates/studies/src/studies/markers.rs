@@ -232,7 +232,7 @@ impl MarkerStudy {
     /// seem to hold a mistake.
     ///
     /// # Errors
-    /// The first fault where no frame remains, or the mistake in the file that it follows from.
+    /// The first fault where no frame remains, or what it follows from.
     pub fn conclude(
         &mut self,
         estimates: &mut [FieldEstimate],
@@ -252,8 +252,8 @@ impl MarkerStudy {
     fn leave_out(&mut self, mut failed: Vec<(usize, Error)>) -> Result<(), Error> {
         if !failed.is_empty() && failed.len() == self.series.frames.len() {
             let most = self.most_moved();
-            let mistake = most.and_then(|frame| self.mistake_without_solution(frame));
-            return Err(mistake.map_or_else(|| failed.swap_remove(0).1, Error::from));
+            let cause = most.and_then(|frame| self.cause_without_solution(frame));
+            return Err(cause.map_or_else(|| failed.swap_remove(0).1, Error::from));
         }
         let all = self.frame_numbers();
         let faults = failed.into_iter().flat_map(|(number, fault)| {

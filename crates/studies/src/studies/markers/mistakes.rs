@@ -126,12 +126,49 @@ impl MarkerStudy {
         Some(Diagnostic::warning("", message).hint(hint))
     }
 
-    /// The mistake that a frame without an estimate seems to hold.
-    pub(super) fn mistake_without_solution(&self, frame: &Frame) -> Option<Diagnostic> {
-        let (mistake, _) = self.likeliest(frame, None)?;
+    /// Why a frame seems to have no estimate: a mistake that it holds, or conditions of edges that are not theirs.
+    pub(super) fn cause_without_solution(&self, frame: &Frame) -> Option<Diagnostic> {
+        let Some((mistake, _)) = self.likeliest(frame, None) else {
+            return self.wrong_conditions(frame);
+        };
         let (seems, hint) = mistake.words();
         let message = format!("the field has no solution, but seems to be {seems}");
         Some(Diagnostic::error("", message).hint(hint))
+    }
+
+    /// The edge, or else all edges, without whose stated conditions a frame is explained; nothing where it is not without them all.
+    fn wrong_conditions(&self, frame: &Frame) -> Option<Diagnostic> {
+        let edges = self.conditions.edges.iter();
+        let stated = edges.filter(|(_, condition)| *condition != EdgeCondition::Unknown);
+        let stated: Vec<&str> = stated.map(|(name, _)| name.as_str()).collect();
+        if stated.is_empty() || !self.is_explained_without(&stated, frame) {
+            return None;
+        }
+        let mut each = stated.chunks(1);
+        let one = each.find(|name| self.is_explained_without(name, frame));
+        let names = one.unwrap_or(&stated).join(" and ");
+        let message = format!(
+            "the field has no solution with the stated conditions, but is explained if {names} moved in an unknown way"
+        );
+        let hint = match self.unknown_gap {
+            None => "state only what is known of edges: a free one carries no load",
+            Some(_) => {
+                "state only what is known of edges: a free one carries no load; and where the specimen ends (--outline, --edge-gap), as a free edge \
+                 is known only from markers here"
+            }
+        };
+        Some(Diagnostic::error("", message).hint(hint))
+    }
+
+    fn is_explained_without(&self, names: &[&str], frame: &Frame) -> bool {
+        let mut study = self.clone();
+        for (name, condition) in &mut study.conditions.edges {
+            if names.contains(&name.as_str()) {
+                *condition = EdgeCondition::Unknown;
+            }
+        }
+        let estimate = study.estimate_frame(frame);
+        self.coarse.is_none() && estimate.is_ok_and(|estimate| estimate.is_explained())
     }
 
     /// The mistake that explains the most, and the estimate of the field that was meant.
