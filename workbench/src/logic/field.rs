@@ -10,7 +10,7 @@ use gelbench::error::Error;
 use gelbench::estimation::FieldEstimate;
 use gelbench::markers::Frame;
 use gelbench::mesh::Mesh;
-use gelbench::results::{Drawing, Results};
+use gelbench::results::{Block, Drawing, Results};
 use gelbench::studies::markers::MarkerStudy;
 use gelbench_mechanics::problem::SheetLaws;
 use gelbench_report::output::{self, vtk};
