@@ -57,14 +57,14 @@ fn markers_that_end_inside_the_edge_leave_the_force_open() {
     // Grips that are not said to be rigid: the interval holds an edge that is nobody's knowledge.
     let loose = ["--study", "loose.toml"];
     let (_, result) = loosely_corrected(&inner, &loose);
-    let [force, low, high] = right_force(&result);
+    let [force, low, high] = right_force(&result, "x_N");
     assert!(
         force < 0.85 * FORCE && low < force && high > FORCE,
         "{force} {low} {high}"
     );
     // Said, the force is right and sure.
     let (_, result) = corrected(&inner, &["--edge-gap", "5 mm"], 0);
-    let [force, low, high] = right_force(&result);
+    let [force, low, high] = right_force(&result, "x_N");
     assert!((force / FORCE - 1.0).abs() < 0.01, "{force}");
     assert!(
         low < FORCE && high > FORCE && high - low < 0.03 * FORCE,
@@ -98,7 +98,7 @@ fn half_a_subset_lies_between_the_outermost_markers_and_the_edge() {
         origin.contains("widened by 5.0000 mm, half a subset (subset 10 and step 5 pixels according to the header of plate.csv)"),
         "{origin}"
     );
-    let [force, low, high] = right_force(&result);
+    let [force, low, high] = right_force(&result, "x_N");
     assert!((force / FORCE - 1.0).abs() < 0.01, "{force}");
     // Up to a step farther out is left open.
     assert!(low < FORCE && high > 1.1 * FORCE, "{low} {high}");
@@ -132,7 +132,7 @@ fn what_the_data_contradict_stands_beside_the_figures_and_in_the_exit_code() {
         "{printed}"
     );
     assert!(number(&result, &["balance", "worst"]) < 1e-9);
-    let [_, low, high] = right_force(&result);
+    let [_, low, high] = right_force(&result, "x_N");
     assert!(low < FORCE && high > FORCE, "{low} {high}");
     let cut = second_frame(|[x, _]| x < 101.0);
     for (text, more, message, code) in [
@@ -171,7 +171,7 @@ fn what_the_data_contradict_stands_beside_the_figures_and_in_the_exit_code() {
         assert!(doubts.iter().any(adjacent), "{doubts:?}");
         if code == 1 {
             // The scaled noise has intervals that hold.
-            let [_, low, high] = right_force(&result);
+            let [_, low, high] = right_force(&result, "x_N");
             assert!(low < FORCE && high > FORCE, "{low} {high}");
         } else {
             assert!(printed.contains("not explained by this law, thickness and conditions"));
@@ -212,7 +212,7 @@ fn noise_that_correlates_is_told_and_held_by_the_intervals() {
         &["verdict", "correlation_length_mm"],
     );
     assert!((2.5..15.0).contains(&length), "{length}");
-    let [_, low, high] = right_force(&result);
+    let [_, low, high] = right_force(&result, "x_N");
     assert!(
         low < FORCE && high > FORCE && high - low > 0.01 * FORCE,
         "{low} {high}"
@@ -227,7 +227,7 @@ fn noise_of_which_few_independent_values_are_left_cannot_be_judged() {
         "{printed}"
     );
     assert!(!printed.contains("not explained"), "{printed}");
-    let [_, low, high] = right_force(&result);
+    let [_, low, high] = right_force(&result, "x_N");
     assert!(low < FORCE && high > FORCE, "{low} {high}");
 }
 
@@ -243,7 +243,7 @@ fn half_of_the_markers_lost_gives_no_interval_that_lies() {
         printed.contains("the outline of the markers is uncertain"),
         "{printed}"
     );
-    let [force, low, high] = right_force(&result);
+    let [force, low, high] = right_force(&result, "x_N");
     assert!((force / FORCE - 1.0).abs() < 0.05, "{force}");
     assert!(low < FORCE && high > FORCE, "{low} {high}");
     // Where lost markers still have rows, their places are the outline.
@@ -257,7 +257,7 @@ fn half_of_the_markers_lost_gives_no_interval_that_lies() {
         })
         .collect();
     let (_, result) = corrected(&rows, &["--edge-gap", "0 mm"], 0);
-    let [_, low, high] = right_force(&result);
+    let [_, low, high] = right_force(&result, "x_N");
     assert!(
         low < FORCE && high > FORCE && high - low < 0.03 * FORCE,
         "{low} {high}"
@@ -288,7 +288,7 @@ fn a_gap_is_a_hole_whether_its_points_have_rows_or_not() {
     // The plate has none.
     let closed = ["--holes", "closed", "--edge-gap", "0 mm"];
     let (_, closed) = corrected(&with_rows, &closed, 0);
-    let [_, low, high] = right_force(&closed);
+    let [_, low, high] = right_force(&closed, "x_N");
     assert!(low < FORCE && FORCE < high, "{low} … {high}");
 }
 
@@ -301,7 +301,7 @@ fn cells_become_smaller_until_their_own_error_is_a_small_part_of_the_intervals()
         number(frame, &["mesh_error_dominates_area_percent"])
     };
     let width = |report: &Value| {
-        let [_, low, high] = right_force(report);
+        let [_, low, high] = right_force(report, "x_N");
         assert!(low < FORCE && FORCE < high, "{low} … {high}");
         high - low
     };

@@ -68,7 +68,9 @@ fn right_fields_are_not_refuted_because_a_grid_is_turned_or_markers_lie_anywhere
         let markers = pulled(1.6, degrees, strip);
         let (code, _, report) = corrected(&markers, "--free top,bottom");
         assert!(code < 2, "{degrees:?}: {code}");
-        let [force, low, high] = right_force(&report);
+        let [_, low, high] = right_force(&report, "y_N");
+        assert!(low < 0.0 && 0.0 < high, "{degrees:?}: {low} … {high}");
+        let [force, low, high] = right_force(&report, "x_N");
         let named = format!("{degrees:?}: {force} in {low} … {high}, expected {expected}");
         assert!((force / expected - 1.0).abs() < 0.04, "{named}");
         assert!(low < expected && expected < high, "{named}");

@@ -50,8 +50,8 @@ pub fn corrected(text: &str, more: &[&str], code: i32) -> (String, Value) {
 /// The exit code where the data are not explained.
 pub const NOT_EXPLAINED: i32 = 5;
 
-/// The force on the right edge along x with its interval.
-pub fn right_force(report: &Value) -> [f64; 3] {
+/// The force on the right edge along `"x_N"` or `"y_N"` with its interval.
+pub fn right_force(report: &Value, axis: &str) -> [f64; 3] {
     let forces = report["steps"][0]["corrected"]["forces"]
         .as_array()
         .unwrap();
@@ -59,6 +59,6 @@ pub fn right_force(report: &Value) -> [f64; 3] {
         .iter()
         .find(|force| force["edge"] == "right")
         .unwrap();
-    let end = |index: usize| force["x_N"]["interval"][index].as_f64().unwrap();
-    [number(force, &["x_N", "value"]), end(0), end(1)]
+    let end = |index: usize| force[axis]["interval"][index].as_f64().unwrap();
+    [number(force, &[axis, "value"]), end(0), end(1)]
 }

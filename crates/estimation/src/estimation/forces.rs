@@ -39,13 +39,13 @@ impl NearestField<'_> {
             .collect()
     }
 
-    /// The forces of the bodies that hold the sheet, with the mesh's own error if it is known, and the standard errors due to the law's
+    /// The forces of the bodies that hold the sheet, with the mesh's own error if it is known, and the standard errors due to considered
     /// parameters if there are any.
     pub fn forces(
         &self,
         reach: f64,
         mesh_error: Option<&MeshError>,
-        law: &[[f64; 2]],
+        considered: &[[f64; 2]],
     ) -> Result<Vec<EdgeForce>, Error> {
         let reactions = self.reactions();
         let slopes = self.equations.law_slopes(&self.parameters, &self.field)?;
@@ -56,8 +56,12 @@ impl NearestField<'_> {
                 mesh_error.forces[index][axis] + dot(&row, mesh_error.parameters.as_slice())
             });
             let division = self.equations.bodies[index].division_error(&reactions, axis);
-            let by_law = law.get(index).map_or(0.0, |deviations| deviations[axis]);
-            let error = self.error(&row).hypot(mesh).hypot(division).hypot(by_law);
+            let by_considered = considered.get(index).map_or(0.0, |all| all[axis]);
+            let error = self
+                .error(&row)
+                .hypot(mesh)
+                .hypot(division)
+                .hypot(by_considered);
             Ok(Estimate::new(force, error, reach))
         };
         let bodies = self.equations.bodies.iter().zip(self.by_body(along)?);
@@ -87,16 +91,16 @@ impl NearestField<'_> {
         parameters.map(estimate).collect()
     }
 
-    /// The measured forces beside those of the field, which also depend on the picture's scale and on the law's parameters; called before the covariance includes the scale.
+    /// The measured forces beside those of the field, which also depend on the picture's scale and on considered parameters; called before the covariance includes the scale.
     /// Forces that a parameter of the law follows are no check.
     pub(super) fn force_checks(
         &self,
         mesh_error: Option<&MeshError>,
         scale: &ScaleChange,
-        law: &[[f64; 2]],
+        considered: &[[f64; 2]],
     ) -> Result<Vec<ForceCheck>, Error> {
         const REDUNDANT: f64 = 1e-3;
-        let with_all = self.forces(1.0, mesh_error, law)?;
+        let with_all = self.forces(1.0, mesh_error, considered)?;
         let plain = self.forces(1.0, None, &[])?;
         let mut checks = Vec::new();
         let knowledge = self.equations.task.knowledge;

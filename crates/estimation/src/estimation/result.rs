@@ -77,10 +77,10 @@ impl NearestField<'_> {
         let rows = self.linear.design.nrows() as f64;
         let white = (rows - self.fit.effective).max(1.0);
         let considered = self.considered(edges)?;
-        let by_law = self.law_deviations(&considered)?;
+        let [by_law, by_all] = self.force_deviations(&considered)?;
         let scale = self.scale_answer();
         let scale_change = self.scale_change(&scale)?;
-        let before = self.force_checks(mesh_error, &scale_change, &by_law)?;
+        let before = self.force_checks(mesh_error, &scale_change, &by_all)?;
         let freedom = self.widen(judged).unwrap_or(white);
         let is_plain =
             self.equations.task.knowledge.robust == Robust::No && judged.noises.is_empty();
@@ -92,12 +92,12 @@ impl NearestField<'_> {
         // Where the data are not explained, residuals taken for noise would hide a wrong force.
         let force_checks = match judged.verdict.answer {
             Answer::NotExplained => before,
-            _ => self.force_checks(mesh_error, &scale_change, &by_law)?,
+            _ => self.force_checks(mesh_error, &scale_change, &by_all)?,
         };
         self.take_scale(&scale);
-        let forces = self.forces(reach, mesh_error, &by_law)?;
+        let forces = self.forces(reach, mesh_error, &by_all)?;
         let parameters = self.law_parameters(reach, mesh_error);
-        // Forces keep unknown places on the side that is possible.
+        // Forces keep common distances of edges on the side that is possible.
         self.consider(considered);
         Ok(FieldEstimate {
             degrees_of_freedom: freedom,

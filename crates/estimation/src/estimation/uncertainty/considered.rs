@@ -31,8 +31,11 @@ use crate::solve::vector::dot;
 
 /// Parameters that are considered: those of the law, then the distances of edges.
 pub struct Considered {
-    /// ∂F/∂cₖ of the law's parameters.
+    /// ∂F/∂cₖ.
     slopes: Vec<Vec<f64>>,
+    /// How many parameters are the law's, and of each of the others the edge.
+    of_law: usize,
+    edges: Vec<usize>,
     /// sₖ.
     changes: Vec<Vec<f64>>,
     /// D.
@@ -51,6 +54,7 @@ impl NearestField<'_> {
         let neighbours = law.map_or(Vec::new(), |law| law.neighbours());
         let slopes = self.equations.slopes_between(neighbours, &self.field)?;
         let (strips, of_places) = self.unknown_places(edges);
+        let (edges, strips): (Vec<usize>, Vec<_>) = strips.into_iter().unzip();
         let (of_law, all) = (slopes.len(), slopes.len() + strips.len());
         let mut squares = DMatrix::zeros(all, all);
         if let Some(law) = law {
@@ -58,7 +62,7 @@ impl NearestField<'_> {
                 .view_mut((0, 0), (of_law, of_law))
                 .copy_from(law.covariance());
         }
-        let forces = [slopes.clone(), strips].concat();
+        let forces = [slopes, strips].concat();
         let tangent = &mut self.equations.newton.tangent;
         let changes = tangent.changes(&forces).map_err(solve)?;
         let mut answers = DMatrix::zeros(self.fit.covariance.nrows(), all);
@@ -75,7 +79,9 @@ impl NearestField<'_> {
             .view_mut((of_law, of_law), of_places.shape())
             .copy_from(&of_places);
         Ok(Considered {
-            slopes,
+            slopes: forces,
+            of_law,
+            edges,
             changes,
             answers,
             squares,
@@ -131,27 +137,34 @@ impl NearestField<'_> {
         Ok(target)
     }
 
-    /// The standard errors of the bodies' forces along x and y in N due to the law's parameters; nothing where none is considered.
-    pub(in crate::estimation) fn law_deviations(
+    /// The standard errors of the bodies' forces along x and y in N due to the law's parameters, nothing where none is considered, and due to
+    /// all of them; a common distance of an edge, which only increases forces, is in neither.
+    pub(in crate::estimation) fn force_deviations(
         &self,
         considered: &Considered,
-    ) -> Result<Vec<[f64; 2]>, Error> {
-        let count = considered.slopes.len();
-        if count == 0 {
-            return Ok(Vec::new());
-        }
-        let squares = considered.squares.view((0, 0), (count, count));
-        let along = |body: usize, axis: usize| -> Result<f64, Error> {
+    ) -> Result<[Vec<[f64; 2]>; 2], Error> {
+        let of_law = considered.of_law;
+        let along = |body: usize, axis: usize| -> Result<[f64; 2], Error> {
             let (grip, row) = self.grip_of(body, axis, &[])?;
             let slope = |index: usize, _| {
                 let direct = dot(&grip.marks, &considered.slopes[index])
                     + dot(&grip.pull, &considered.changes[index]);
                 direct + dot(&row, considered.answers.column(index).as_slice())
             };
-            let slopes = DVector::from_fn(count, slope);
-            Ok(slopes.dot(&(squares * &slopes)).max(0.0).sqrt())
+            let mut slopes = DVector::from_fn(considered.slopes.len(), slope);
+            subtract_means(&mut slopes.as_mut_slice()[of_law..], &considered.edges);
+            let squares = &considered.squares;
+            let deviation = |slopes: &DVector<f64>| slopes.dot(&(squares * slopes)).max(0.0).sqrt();
+            let all = deviation(&slopes);
+            slopes.rows_range_mut(of_law..).fill(0.0);
+            Ok([deviation(&slopes), all])
         };
-        self.by_body(along)
+        let deviations = self.by_body(along)?;
+        let [by_law, by_all] = [0, 1].map(|which| {
+            let each = deviations.iter();
+            each.map(|both| both.map(|one| one[which])).collect()
+        });
+        Ok([if of_law > 0 { by_law } else { Vec::new() }, by_all])
     }
 
     /// Appends the parameters to those of the field.
@@ -179,6 +192,17 @@ impl NearestField<'_> {
             .copy_from(&squares);
         self.fit.covariance = joined;
         self.linear.sensitivities.extend(changes);
+    }
+}
+
+/// Subtracts from each value the mean of those of its edge.
+fn subtract_means(values: &mut [f64], edges: &[usize]) {
+    let mut first = 0;
+    for run in edges.chunk_by(|a, b| a == b) {
+        let of_edge = &mut values[first..first + run.len()];
+        let mean = of_edge.iter().sum::<f64>() / run.len() as f64;
+        of_edge.iter_mut().for_each(|value| *value -= mean);
+        first += run.len();
     }
 }
 

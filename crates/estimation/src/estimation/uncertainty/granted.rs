@@ -41,6 +41,7 @@ impl NearestField<'_> {
         let (strips, squares) = self.unknown_places(edges);
         if !strips.is_empty() {
             let independent = squares.cholesky().map(|factor| factor.l());
+            let strips: Vec<_> = strips.into_iter().map(|(_, strip)| strip).collect();
             let designs = self.marker_changes(&strips)?;
             all.extend(independent.map(|factor| Granted {
                 design: designs * factor,

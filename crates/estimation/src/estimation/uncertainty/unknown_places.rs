@@ -19,17 +19,21 @@ const APART: f64 = 8.0;
 const MOST_PARTS: f64 = 3.0;
 
 impl NearestField<'_> {
-    /// The forces of the strips beside the free edges in N/mm, and Σ in mm²; nothing where the edges are known.
+    /// The forces of the strips beside the free edges in N/mm, each with the number of its edge, and Σ in mm²; nothing where the edges are known.
     pub(in crate::estimation) fn unknown_places(
         &self,
         edges: &[Edge],
-    ) -> (Vec<Vec<f64>>, DMatrix<f64>) {
+    ) -> (Vec<(usize, Vec<f64>)>, DMatrix<f64>) {
         let Some(gap) = self.equations.task.knowledge.edge_gap else {
             return (Vec::new(), DMatrix::zeros(0, 0));
         };
-        let free = edges.iter().filter(|edge| edge.has_strip());
-        let strips = free.flat_map(|edge| self.strips_between_points(edge, gap));
-        let strips: Vec<Vec<f64>> = strips.collect();
+        let free = edges.iter().enumerate();
+        let free = free.filter(|(_, edge)| edge.has_strip());
+        let strips = free.flat_map(|(index, edge)| {
+            let strips = self.strips_between_points(edge, gap).into_iter();
+            strips.map(move |strip| (index, strip))
+        });
+        let strips: Vec<_> = strips.collect();
         let square = |i, j| gap * gap / if i == j { 3.0 } else { 4.0 };
         let squares = DMatrix::from_fn(strips.len(), strips.len(), square);
         (strips, squares)
