@@ -93,6 +93,7 @@ impl Options {
                     unit: length_unit(&self.mesh_unit)?,
                     merge_nodes: self.merge_nodes,
                     allowed: allowed.map_err(|unknown| refused(unknown.to_string()))?,
+                    is_plane_strain: None,
                 };
                 MeshSource::File(mesh.clone(), reading)
             }

@@ -4,6 +4,7 @@ use std::fs;
 
 mod ends;
 mod faults;
+mod loads;
 mod nested;
 mod nothing;
 mod paths;

@@ -73,6 +73,7 @@ fn mesh_source(options: &Options) -> MeshSource {
                 unit: options.mesh_unit,
                 merge_nodes: options.merge_nodes,
                 allowed: Exemptions::of_names(names).unwrap_or_default(),
+                is_plane_strain: None,
             };
             MeshSource::File(mesh.clone(), reading)
         }

@@ -195,8 +195,8 @@ pub const UNITS: &[(&str, Dimension, f64)] = &[
     ("mmol/L", Dimension::Concentration, 1e-9),
     ("mol/cm^3", Dimension::Concentration, 1e-3),
     ("mol/mm^3", Dimension::Concentration, 1.0),
-    ("rad", Dimension::Angle, 1.0),
     ("deg", Dimension::Angle, std::f64::consts::PI / 180.0),
+    ("rad", Dimension::Angle, 1.0),
     ("°", Dimension::Angle, std::f64::consts::PI / 180.0),
     ("%", Dimension::Ratio, 1e-2),
 ];

@@ -328,8 +328,25 @@ fn read_fit(section: &Section) -> FitRecord {
     record
 }
 
+/// Names of moduli by which a material is often known, and which no law has as parameters.
+const MODULI: [&str; 7] = [
+    "young",
+    "youngs_modulus",
+    "e",
+    "E",
+    "poisson_ratio",
+    "poisson",
+    "nu",
+];
+
 /// Advice on a parameter that only other laws have.
 fn of_other_laws(key: &str, law_name: &str) -> Option<String> {
+    if MODULI.contains(&key) {
+        return Some(format!(
+            "`gelbench materials new --law {law_name} --young \"20 kPa\" --poisson 0.45` makes a card of Young's modulus and Poisson's ratio; on a \
+             card the latter stands under [volume] as poisson_ratio"
+        ));
+    }
     let has = |law: &&Law| {
         let (_, entries) = law.with_values(&[], StressMeasure::Nominal, StrainMeasure::Nominal);
         entries

@@ -45,7 +45,12 @@ pub fn from_card(parameters: &Parameters) -> Box<dyn HyperelasticLaw> {
         Err(fault) => {
             let read: String = text.chars().take(fault.after).collect();
             let rest: String = text.chars().skip(fault.after).collect();
-            let message = format!("is no formula behind `{read}`: `{rest}`");
+            let [open, closed] = ['(', ')'].map(|bracket| text.matches(bracket).count());
+            let message = if open == closed {
+                format!("is no formula behind `{read}`: `{rest}`")
+            } else {
+                format!("has {open} opening and {closed} closing brackets")
+            };
             parameters.fault("energy", &message, &hint());
             return Box::new(EnergyOfInvariants(Expression::Number(f64::NAN)));
         }

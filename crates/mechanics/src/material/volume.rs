@@ -24,8 +24,11 @@ use crate::document::{Bound, name_of};
 pub const LARGEST_POISSON_RATIO: f64 = 0.4999;
 
 /// The Poisson's ratios of a material that changes its volume.
-pub const POISSON_RATIO: Bound =
-    Bound::Range(-0.9, LARGEST_POISSON_RATIO, "between -0.9 and 0.4999");
+pub const POISSON_RATIO: Bound = Bound::Range(
+    -0.9,
+    LARGEST_POISSON_RATIO,
+    "between -0.9 and 0.4999 (0.5 is incompressible: a law without [volume])",
+);
 
 /// How a material resists a change of its volume.
 #[derive(Clone, Copy, Debug, PartialEq)]

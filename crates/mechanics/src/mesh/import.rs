@@ -41,6 +41,8 @@ pub struct MeshReading {
     pub merge_nodes: Option<f64>,
     /// Apparent faults that are intended.
     pub allowed: Exemptions,
+    /// Whether the sheet is in plane strain, which elements may contradict; they are not compared where it is not known.
+    pub is_plane_strain: Option<bool>,
 }
 
 impl MeshReading {
@@ -50,6 +52,7 @@ impl MeshReading {
             unit,
             merge_nodes: None,
             allowed: Exemptions::default(),
+            is_plane_strain: None,
         }
     }
 }
@@ -85,12 +88,14 @@ fn sound(
     }
     let lost = raw.lines.clone();
     let areas: Vec<String> = raw.areas.keys().cloned().collect();
+    let contradicts = raw.is_plane_strain && reading.is_plane_strain == Some(false);
     let mesh = raw.mesh(reading.unit);
     let mesh = mesh.map_err(|reason| unreadable(name, reason))?;
     let mut faults = mesh.faults(reading.allowed);
     let wrong = faults.iter().any(|fault| fault.severity == Severity::Error);
     if !wrong {
         faults.extend(lost_groups(&lost, &mesh));
+        faults.extend(contradicts.then(plane_strain));
         let is_named =
             |side: &str| lost.contains_key(side) || areas.iter().any(|area| area == side);
         faults.extend(doubtful_sides(&mesh, is_named));
@@ -119,6 +124,13 @@ fn read(path: &Path) -> Result<Raw, Unreadable> {
         Some("vtu" | "vtk") => vtk::read(path),
         _ => Err("is not a .msh, .inp, .vtu or .vtk file".into()),
     }
+}
+
+/// The warning about elements of plane strain.
+fn plane_strain() -> Diagnostic {
+    let message = "its elements are those of plane strain (CPE), and the sheet is in plane stress";
+    let hint = "write sheet = \"plane-strain\" beside the card, or take elements CPS";
+    Diagnostic::warning("", message).hint(hint)
 }
 
 /// Warnings about lines in groups that are not edges of the boundary.

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use super::balance::Body;
 use super::boundary_conditions::{Load, Support};
 use super::constraints::{Constraints, Tie};
 use super::contradictions::{agreeing, contradictions};
@@ -42,6 +43,21 @@ impl BoundaryProblem {
     /// The finite-element energy of a mesh.
     pub fn finite_elements(&self, mesh: &Mesh) -> SheetEnergy {
         SheetEnergy::of_mesh(self.laws().in_cells(mesh), mesh, self.thickness)
+    }
+
+    /// The resultant in N of the loads on a group of a mesh with the displacements `u`, at a load factor.
+    ///
+    /// # Errors
+    /// A [`Diagnostic`] for a load that does not suit the mesh.
+    pub fn load_on(
+        &self,
+        mesh: &Mesh,
+        name: &str,
+        (factor, u): (f64, &[f64]),
+    ) -> Result<[f64; 2], Diagnostic> {
+        let loads = self.loads.iter().filter(|(group, _)| group == name);
+        let loads = Loads::of(mesh, &loads.cloned().collect::<Vec<_>>(), self.thickness)?;
+        Ok(loads.resultant(factor, u, &Body::new(mesh, u)).force)
     }
 
     /// The laws of its material.

@@ -167,18 +167,23 @@ impl<'a> Model<'a> {
         After::new(self.energy, history)
     }
 
+    /// The strain energy in mJ of a state, without the potential of loads; NaN where the state is inverted.
+    pub fn strain_energy(&self, state: &State) -> f64 {
+        let history = self.remembered(state);
+        let mut residual = vec![0.0; state.displacement.len()];
+        let energy = self.energy_after(&history);
+        Assembly::residual(&energy, &state.displacement, &mut residual).unwrap_or(f64::NAN)
+    }
+
     /// The work done on the material up to a state; `None` where it has no memory.
     pub fn work(&self, state: &State) -> Option<Work> {
         let history = self.remembered(state);
         if history.is_empty() {
             return None;
         }
-        let energy = self.energy_after(&history);
-        let mut residual = vec![0.0; state.displacement.len()];
-        let all = Assembly::residual(&energy, &state.displacement, &mut residual);
         let dissipated = self.energy.dissipated(&history);
         Some(Work {
-            stored: all.unwrap_or(f64::NAN) - dissipated,
+            stored: self.strain_energy(state) - dissipated,
             dissipated,
         })
     }

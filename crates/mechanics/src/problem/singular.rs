@@ -16,16 +16,18 @@ impl BoundaryProblem {
         Ok(singular_points(mesh, &self.fixed_nodes(mesh)?))
     }
 
-    /// The nodes that one support, or a grip with a given force, holds along both axes. Two symmetry lines that cross do not bound the sheet.
+    /// The nodes that one support, or a grip with given forces, holds along both axes. Two symmetry lines that cross do not bound the sheet.
     fn fixed_nodes(&self, mesh: &Mesh) -> Result<BTreeSet<usize>, Diagnostic> {
         let (held, ties) = (self.held_by(mesh)?, self.ties(mesh)?);
+        let masters: BTreeSet<usize> = ties.values().map(|tie| tie.master).collect();
+        let is_tied = |unknown: &usize| ties.contains_key(unknown) || masters.contains(unknown);
         let is_fixed = |node: &usize| {
             let [along, across] = [2 * node, 2 * node + 1];
             match (held.get(&along), held.get(&across)) {
                 (Some(one), Some(other)) => one == other,
-                (Some(_), None) => ties.contains_key(&across),
-                (None, Some(_)) => ties.contains_key(&along),
-                (None, None) => false,
+                (Some(_), None) => is_tied(&across),
+                (None, Some(_)) => is_tied(&along),
+                (None, None) => is_tied(&along) && is_tied(&across),
             }
         };
         Ok((0..mesh.nodes.len()).filter(is_fixed).collect())
@@ -56,7 +58,7 @@ mod tests {
     use super::*;
     use crate::material::NeoHooke;
     use crate::mesh::{CellShape, Shape};
-    use crate::problem::Support;
+    use crate::problem::{Drive, Support};
 
     fn points(supports: &[(&str, Support)]) -> Vec<[f64; 2]> {
         let supports = supports.iter();
@@ -83,5 +85,18 @@ mod tests {
         assert!((ends[1][1] - ends[0][1] - 10.0).abs() < 1e-12);
         let lines = [("left", Support::Roller), ("bottom", Support::Roller)];
         assert!(points(&lines).is_empty());
+    }
+
+    #[test]
+    fn a_grip_ends_at_two_corners_however_it_is_driven() {
+        let drives = [Drive::Displacement(1.0), Drive::Force(0.2)];
+        for along in drives {
+            for across in drives {
+                let grip = ("right", Support::Grip([along, across]));
+                let ends = points(&[("left", Support::Roller), grip]);
+                assert_eq!(ends.len(), 2, "{along:?} {across:?}");
+                assert!(ends.iter().all(|end| end[0] == 20.0));
+            }
+        }
     }
 }

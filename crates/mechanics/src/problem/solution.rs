@@ -18,6 +18,8 @@ pub struct Solution {
     groups: Vec<Vec<GroupState>>,
     /// The resultant of all forces and moments together, relative to the largest of them, in each state.
     pub balances: Vec<f64>,
+    /// The strain energy of each state in mJ.
+    pub energies: Vec<f64>,
     /// The work done on the material up to each state; `None` where it has no memory.
     pub works: Vec<Option<Work>>,
 }
@@ -30,11 +32,14 @@ impl Solution {
             (reactions.at_groups(groups), reactions.balance().relative())
         };
         let (groups, balances) = states.iter().map(follow).unzip();
+        let energies = states.iter().map(|state| model.strain_energy(state));
+        let energies = energies.collect();
         let works = states.iter().map(|state| model.work(state)).collect();
         Self {
             mesh: model.mesh.clone(),
             groups,
             balances,
+            energies,
             works,
             states,
         }
@@ -47,6 +52,7 @@ impl Solution {
             states: Vec::new(),
             groups: Vec::new(),
             balances: Vec::new(),
+            energies: Vec::new(),
             works: Vec::new(),
         }
     }

@@ -13,6 +13,9 @@ const MOST_ROWS: usize = 12;
 /// Forces, moments and displacements below this share of the largest say nothing at a glance.
 const NOTHING: f64 = 1e-4;
 
+/// Displacements below this share of the sheet's side, and forces below this share of those on a group's nodes, are rounding.
+const ROUNDING: f64 = 1e-12;
+
 /// The result of one model of a sheet.
 pub struct Headline<'a> {
     /// The model.
@@ -100,7 +103,8 @@ const MOMENT: Column = ("moment [N·mm]", |state| state.carried()[2]);
 impl Headline<'_> {
     /// The tables of a report's begin.
     pub fn blocks(&self) -> Vec<Block> {
-        let mut blocks = vec![self.forces()];
+        let is_any = !self.listed().is_empty();
+        let mut blocks: Vec<Block> = is_any.then(|| self.forces()).into_iter().collect();
         blocks.extend(self.state.largest());
         blocks.push(Block::Paragraph(self.note()));
         blocks
@@ -144,16 +148,20 @@ impl Headline<'_> {
         states.any(|state| column.1(state).abs() > NOTHING * size)
     }
 
-    /// The largest displacement in mm, force in N and, of that force over the sheet's larger side, moment in N·mm.
+    /// The largest displacement in mm, force in N and, of that force over the sheet's larger side, moment in N·mm; at least so much that rounding
+    /// of positions, and of the forces on a group's nodes, is nothing beside them.
     fn sizes(&self) -> [f64; 3] {
         let [low, high] = self.state.deformed.mesh.bounding_box();
         let side = (high[0] - low[0]).max(high[1] - low[1]);
-        let largest = |[x, y]: [Column; 2]| {
+        let largest = |[x, y]: [Column; 2], least: f64| {
             let sizes = self.states().map(|state| x.1(state).hypot(y.1(state)));
-            sizes.fold(0.0, f64::max)
+            sizes.fold(least, f64::max)
         };
-        let force = largest(FORCES);
-        [largest(DISPLACEMENTS), force, force * side]
+        let carrying = self.states().filter(|state| state.carried() != [0.0; 3]);
+        let of_nodes = carrying.map(|state| state.size).fold(0.0, f64::max);
+        let force = largest(FORCES, ROUNDING / NOTHING * of_nodes);
+        let displacement = largest(DISPLACEMENTS, ROUNDING / NOTHING * side);
+        [displacement, force, force * side]
     }
 
     /// The quantities that are worth a glance in a group, with their largest sizes; a force in any case.
@@ -178,11 +186,12 @@ impl Headline<'_> {
     fn listed(&self) -> Vec<usize> {
         let [displacement, force, moment] = self.sizes();
         let of = |group: usize| self.steps.iter().map(move |(_, groups)| &groups[group]);
-        let carries = |group: &usize| {
+        let pushes = |group: &usize| {
             FORCES
                 .iter()
                 .any(|column| Self::is_any(*column, of(*group), force))
         };
+        let carries = |group: &usize| pushes(group) || Self::is_any(MOMENT, of(*group), moment);
         let moves = |group: &usize| {
             DISPLACEMENTS
                 .iter()
@@ -272,18 +281,29 @@ fn is_pressed<'a>(states: impl Iterator<Item = &'a LocalState>) -> bool {
 }
 
 impl LoadedSheet<'_> {
-    /// The distance from singular points in mm from which on values count: a fifth of the sheet's smaller side, whatever the mesh.
-    fn distance(&self) -> f64 {
+    /// The sheet's smaller side in mm.
+    fn side(&self) -> f64 {
         let [low, high] = self.deformed.mesh.bounding_box();
-        (high[0] - low[0]).min(high[1] - low[1]) / 5.0
+        (high[0] - low[0]).min(high[1] - low[1])
+    }
+
+    /// The distance from singular points in mm from which on values count, whatever the mesh.
+    fn distance(&self) -> f64 {
+        self.side() / 5.0
+    }
+
+    /// The decimal places of a position, by which a fiftieth of the smaller side is seen.
+    fn places(&self) -> usize {
+        (1.6 - self.side().log10()).ceil().clamp(1.0, 9.0) as usize
     }
 
     /// Where largest values are not looked for.
     pub fn note(&self) -> Option<String> {
+        let distance = format!("{:.1$}", self.distance(), self.places() + 3);
+        let distance = distance.trim_end_matches('0').trim_end_matches('.');
         (!self.singular.is_empty()).then(|| {
             format!(
-                "Largest values: farther than {} mm from ends of supports and re-entrant corners, where stress has no bound.",
-                (1e4 * self.distance()).round() / 1e4
+                "Largest values: farther than {distance} mm from ends of supports and re-entrant corners, where stress has no bound.",
             )
         })
     }
@@ -302,7 +322,7 @@ impl LoadedSheet<'_> {
             states,
         } = NodalSheet::new(self.laws, mesh, fields, viscous);
         let mesh = &*mesh;
-        let distance = self.distance();
+        let (distance, places) = (self.distance(), self.places());
         let is_regular = |node: &usize| {
             let [x, y] = mesh.nodes[*node];
             self.singular
@@ -319,9 +339,8 @@ impl LoadedSheet<'_> {
             let value = |node: usize| value(&states[node]);
             let sign = if is_least { -1.0 } else { 1.0 };
             let node = largest_node(mesh, &regular, &|node| sign * value(node))?;
-            let position = mesh.nodes[node]
-                .map(|along| format!("{along:.1}"))
-                .join(", ");
+            let position = mesh.nodes[node].map(|along| position(along, places));
+            let position = position.join(", ");
             let mut row = vec![
                 name.to_owned(),
                 number(value(node)),
@@ -346,6 +365,13 @@ impl LoadedSheet<'_> {
         let count = head.len() - usize::from(self.gauge.is_none());
         (!rows.is_empty()).then(|| Block::table(&head[..count], rows))
     }
+}
+
+/// A coordinate with some decimal places; nothing less than zero that is rounded to it.
+fn position(along: f64, places: usize) -> String {
+    let rounding = 0.5 * 10_f64.powi(-(places as i32));
+    let along = if along.abs() < rounding { 0.0 } else { along };
+    format!("{along:.places$}")
 }
 
 /// The node with the largest value; of nodes that differ by rounding alone, as those of a symmetric sheet, the first along x, then y.

@@ -107,10 +107,12 @@ pub fn warning(states: impl Iterator<Item = (String, Wrinkling)>) -> Option<Stri
     let [compression, critical] = worst.worst;
     Some(format!(
         "a sheet of this thickness may wrinkle or buckle on {:.1} % of its area at {load}, and lose stress that the plane solution still \
-         carries: the compression reaches {} MPa, and about {} MPa are critical (local plate theory; array `wrinkling` of the finite elements' VTK files).",
+         carries: the compression reaches {} MPa, and about {} MPa are critical (to a factor of {} by local plate theory; array `wrinkling` of \
+         the finite elements' VTK files).",
         worst.area_percent,
         number(compression),
-        number(critical)
+        number(critical),
+        1.0 / CERTAIN
     ))
 }
 

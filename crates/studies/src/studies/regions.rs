@@ -124,7 +124,7 @@ pub fn fault_of(region: &str, before: &[&str], mesh: &Mesh) -> Option<(String, S
         );
         return fault(
             message,
-            "name its surfaces (Gmsh: Physical Surface), or write one [material]",
+            "name its surfaces (Gmsh: Physical Surface; VTK: an array of the cells gmsh:physical, physical or CellEntityIds), or write one [material]",
         );
     }
     if !known.contains(&region) {

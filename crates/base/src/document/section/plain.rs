@@ -14,6 +14,11 @@ pub(super) fn text(value: &DeValue<'_>) -> Option<String> {
 /// A value's quantity in the internal unit, or what is wrong and what to do.
 pub(super) fn quantity(value: &DeValue<'_>, dimension: Dimension) -> Result<f64, (String, String)> {
     let (name, example) = (dimension.name(), dimension.example());
+    let article = if name.starts_with(['a', 'e']) {
+        "an"
+    } else {
+        "a"
+    };
     match value {
         DeValue::String(text) => units::parse(text, dimension).map_err(|fault| {
             let hint = fault.remedy(text, dimension);
@@ -29,9 +34,12 @@ pub(super) fn quantity(value: &DeValue<'_>, dimension: Dimension) -> Result<f64,
             Some(number) => {
                 let text = number.to_string();
                 let hint = QuantityFault::MissingUnit.remedy(&text, dimension);
-                Err((format!("a {name} needs a unit"), hint))
+                Err((format!("{article} {name} needs a unit"), hint))
             }
-            None => Err((format!("must be a {name}"), format!("such as {example}"))),
+            None => Err((
+                format!("must be {article} {name}"),
+                format!("such as {example}"),
+            )),
         },
     }
 }

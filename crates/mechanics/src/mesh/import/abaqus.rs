@@ -19,6 +19,7 @@ enum Block {
     Elements {
         shape: CellShape,
         set: Option<String>,
+        is_plane_strain: bool,
     },
     NodeSet {
         name: String,
@@ -95,6 +96,7 @@ fn keyword(line: &str) -> Result<Block, String> {
         "ELEMENT" => Block::Elements {
             shape: shape(&named("TYPE")?)?,
             set: option("ELSET"),
+            is_plane_strain: named("TYPE")?.to_uppercase().starts_with("CPE"),
         },
         "NSET" => Block::NodeSet {
             name: named("NSET")?,
@@ -122,6 +124,9 @@ fn shape(kind: &str) -> Result<CellShape, String> {
         Some('4') => Ok(CellShape::Quad4),
         Some('6') => Ok(CellShape::Triangle6),
         Some('8') => Ok(CellShape::Quad8),
+        _ if kind.starts_with("C3D") => Err(format!(
+            "elements of the type {kind}, a 3-D mesh: mesh the flat surface alone, with CPS or CPE"
+        )),
         _ => Err(format!(
             "elements of the type {kind}; those of a sheet are CPS3, CPS4, CPS6, CPS8, or CPE"
         )),
@@ -154,7 +159,14 @@ impl Input {
             .collect();
         match block {
             Block::Nodes { set } => self.node(&fields, set.as_deref()),
-            Block::Elements { shape, set } => self.element(&fields, *shape, set.as_deref()),
+            Block::Elements {
+                shape,
+                set,
+                is_plane_strain,
+            } => {
+                self.raw.is_plane_strain |= is_plane_strain;
+                self.element(&fields, *shape, set.as_deref())
+            }
             Block::NodeSet { name, is_range } => {
                 let members = members(&fields, *is_range)?;
                 extend(&mut self.node_sets, name, members);

@@ -180,6 +180,9 @@ fn kind(number: i64) -> Result<(Kind, usize), Unreadable> {
         3 => (Kind::Cell(CellShape::Quad4), 4),
         16 => (Kind::Cell(CellShape::Quad8), 8),
         10 => (Kind::Cell(CellShape::Quad9), 9),
+        4..=7 | 11..=14 | 17..=19 | 29..=31 => {
+            return Err("is a 3-D mesh (tetrahedra, hexahedra, prisms or pyramids): mesh the flat surface alone, `gmsh -2`".into());
+        }
         other => {
             return Err(format!(
                 "has elements of Gmsh's type {other}; triangles with 3 or 6 nodes and quadrilaterals with 4, 8 or 9 can be read"

@@ -31,6 +31,8 @@ pub struct Raw {
     pub sets: BTreeMap<String, Vec<u64>>,
     /// Numbers of cells by the name of their group.
     pub areas: BTreeMap<String, Vec<usize>>,
+    /// Whether elements are stated to be of plane strain.
+    pub is_plane_strain: bool,
 }
 
 /// The bytes of a file.
@@ -210,9 +212,6 @@ impl Raw {
     /// Names parts of the sheet; what the file calls lines, points or sets of the same name belongs to them, a side of the box does not.
     fn name_areas(&self, mesh: &mut Mesh) {
         for (name, cells) in &self.areas {
-            if cells.len() == mesh.cell_count() {
-                continue;
-            }
             let has_more = self.lines.contains_key(name)
                 || self.points.contains_key(name)
                 || self.sets.contains_key(name);

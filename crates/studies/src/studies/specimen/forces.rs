@@ -25,6 +25,8 @@ struct GroupRow<'a> {
     state: &'a GroupState,
     /// The whole field, and its mesh.
     field: (&'a State, &'a Mesh),
+    /// The strain energy in mJ.
+    energy: f64,
 }
 
 /// All groups of all models at a load factor.
@@ -32,6 +34,7 @@ fn groups_at<'a>(specimen: &'a Specimen, models: &'a Models, step: usize) -> Vec
     let factor = specimen.factors[step];
     let of_model = |(kind, solution): (ModelKind, &'a Solution)| {
         let field = (solution.states.get(step)?, &solution.mesh);
+        let energy = solution.energies[step];
         let groups = specimen.groups().into_iter().zip(solution.groups(step)?);
         let row = move |(group, state)| GroupRow {
             factor,
@@ -39,6 +42,7 @@ fn groups_at<'a>(specimen: &'a Specimen, models: &'a Models, step: usize) -> Vec
             model: kind.style(),
             state,
             field,
+            energy,
         };
         Some(groups.map(row).collect::<Vec<_>>())
     };
@@ -105,9 +109,7 @@ pub fn csv(specimen: &Specimen, models: &Models) -> String {
         .column("displacement_y_mm", |row| {
             row.state.displacement[1].to_string()
         })
-        .column("strain_energy_mJ", |row| {
-            row.field.0.convergence.energy.to_string()
-        })
+        .column("strain_energy_mJ", |row| row.energy.to_string())
         .column_if(is_plate, "mid_width_mm", |row| {
             let (field, mesh) = row.field;
             mesh.mid_width(&field.displacement).to_string()

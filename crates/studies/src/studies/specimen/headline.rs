@@ -2,7 +2,8 @@
 
 use super::problem::Specimen;
 use super::results::models::Models;
-use crate::results::Block;
+use crate::results::{Block, digits};
+use crate::statistics::larger;
 use crate::studies::ModelKind;
 
 /// The groups' forces and displacements at every load factor and the largest values at the largest one, by the finite elements, or else by the
@@ -12,9 +13,9 @@ pub fn headline(specimen: &Specimen, models: &Models) -> Vec<Block> {
         return Vec::new();
     };
     let model = match kind {
-        ModelKind::MassSpring => "springs",
-        ModelKind::Corrected => "corrected field",
-        ModelKind::FiniteElement => "finite elements",
+        ModelKind::MassSpring => "springs".to_owned(),
+        ModelKind::Corrected => "corrected field".to_owned(),
+        ModelKind::FiniteElement => finite_elements(models),
     };
     let (series, along) = (models.series(kind), specimen.along);
     let steps = 0..series.states.len();
@@ -23,8 +24,26 @@ pub fn headline(specimen: &Specimen, models: &Models) -> Vec<Block> {
     let largest = largest.unwrap_or_default();
     series.headline(
         specimen,
-        (model, along.head(), specimen.groups()),
+        (&model, along.head(), specimen.groups()),
         steps.map(|step| (step, along.value(series.states[step].at))),
         (largest, along.describe(series.states[largest].at)),
     )
+}
+
+/// The finite elements with their own error, where it is known.
+fn finite_elements(models: &Models) -> String {
+    const LEAST: f64 = 1e-3;
+    let reference = &models.reference;
+    let errors = (0..reference.reached()).filter_map(|step| reference.measured_percent(step));
+    match errors.reduce(larger) {
+        None => "finite elements".to_owned(),
+        Some(error) => {
+            let least = if error < LEAST { "less than " } else { "" };
+            format!(
+                "finite elements (estimated error of the {}: {least}{} %)",
+                reference.measured.name(),
+                digits(error.max(LEAST), 2)
+            )
+        }
+    }
 }

@@ -61,11 +61,8 @@ impl<'a> MeasuredFields<'a> {
         let fields = SheetField::NAMES.map(|(name, field)| head(name, field));
         let force = format!("force_{}_N", ["x", "y"][self.force_axis()]);
         let lengths = ["length_at_rest_mm", "length_mm", "extensometer_stretch"].map(str::to_owned);
-        let coordinates = |all: &[&str]| {
-            all.iter()
-                .map(|name| (*name).to_owned())
-                .collect::<Vec<_>>()
-        };
+        let coordinates =
+            |all: &[&'static str]| Vec::from_iter(all.iter().map(|name| (*name).to_owned()));
         let tables = [
             (
                 "probe",
@@ -135,11 +132,23 @@ impl<'a> MeasuredFields<'a> {
         .collect()
     }
 
-    /// The axis of the larger force of the measured group.
+    /// The axis of the larger force on the measured group.
     pub(super) fn force_axis(&self) -> usize {
+        let models = self.models.iter().enumerate();
+        let last =
+            models.filter_map(|(model, series)| Some((model, series.states.len().checked_sub(1)?)));
+        larger_axis(last.map(|(model, step)| self.force_on_group(model, step)))
+    }
+
+    /// The force of supports and loads on the measured group in N.
+    fn force_on_group(&self, model: usize, step: usize) -> [f64; 2] {
+        let (specimen, series) = (self.specimen, &self.models[model]);
+        let state = &series.states[step];
+        let now = (specimen.factors[step], state.displacement);
+        let load = specimen.problem.load_on(series.mesh, &specimen.group, now);
+        let load = load.unwrap_or_default();
         let group = self.group();
-        let last = self.models.iter().filter_map(|model| model.states.last());
-        larger_axis(last.filter_map(|state| Some(state.groups.get(group)?.force)))
+        [0, 1].map(|axis| state.groups[group].force[axis] + load[axis])
     }
 
     fn group(&self) -> usize {
@@ -153,9 +162,8 @@ impl<'a> MeasuredFields<'a> {
         &self.models[state.model].states[state.step].groups[self.group()]
     }
 
-    /// The force of the measured group in N.
     fn force(&self, state: &State) -> f64 {
-        self.group_state(state).force[self.force_axis()]
+        self.force_on_group(state.model, state.step)[self.force_axis()]
     }
 
     /// The force of the measured group over something, of the models that are drawn.

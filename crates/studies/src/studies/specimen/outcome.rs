@@ -43,7 +43,7 @@ pub fn outcome(specimen: &Specimen, models: &Models) -> Outcome {
             specimen,
             series: &models.all_series(),
             models: Some(models),
-            has_springs: true,
+            has_springs: specimen.models.contains(&ModelKind::MassSpring),
             is_motion: false,
         }),
         balance: forces::worst_balance(&balances),
@@ -200,7 +200,7 @@ fn quantities_of_model(
     let state = solution.states.get(step)?;
     let mut all = object(json!({
         "groups": forces::groups(specimen, solution, step),
-        "energy_mJ": state.convergence.energy,
+        "energy_mJ": solution.energies[step],
         "residuals": state.convergence.residuals,
     }));
     if let Some(work) = solution.works.get(step).copied().flatten() {

@@ -6,8 +6,8 @@ use std::sync::Arc;
 use super::measured_curve::{check_extensometer, read_measured_curve};
 use super::problem::{Method, Outline, Refinement, Specimen};
 use crate::document::{Bound, Section};
-use crate::material::Card;
-use crate::mesh::{CellShape, Mesh, import};
+use crate::material::{Card, PlaneState};
+use crate::mesh::{CellShape, Mesh, MeshReading, import};
 use crate::problem::BoundaryProblem;
 use crate::solve::LinearSolver;
 use crate::studies::pictures::Pictures;
@@ -53,7 +53,17 @@ pub fn read_with(root: &Section, folder: &Path, import: &Import) -> Option<Speci
     let refinement = read_refinement(&section, element);
     section.unknown_keys();
     let correction = read_correction(&root.section("corrector"));
-    let sheet = StatedSheet::read(root, import, element);
+    let is_plane_strain = materials
+        .plane_state()
+        .map(|state| state == PlaneState::Strain);
+    let import = |file: &str, reading| {
+        let reading = MeshReading {
+            is_plane_strain,
+            ..reading
+        };
+        import(file, reading)
+    };
+    let sheet = StatedSheet::read(root, &import, element);
 
     let remembers = materials.soften();
     let path = root

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::super::problem::Outline;
 use crate::document::Section;
-use crate::material::Card;
+use crate::material::{Card, PlaneState};
 use crate::mesh::Mesh;
 use crate::studies::card::read_card;
 use crate::studies::regions::{fault_of, regions_of};
@@ -67,6 +67,12 @@ impl<'a> Materials<'a> {
         Self {
             entries: vec![entry],
         }
+    }
+
+    /// The state of the first card.
+    pub fn plane_state(&self) -> Option<PlaneState> {
+        let mut cards = self.entries.iter().filter_map(|entry| entry.card.as_ref());
+        cards.next().map(|card| card.law.plane_state())
     }
 
     /// Whether a card softens.

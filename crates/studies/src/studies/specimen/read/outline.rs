@@ -90,6 +90,7 @@ fn read_mesh(section: &Section, import: &Import) -> Option<(Mesh, Exemptions)> {
         unit,
         merge_nodes,
         allowed: allowed.ok()?,
+        is_plane_strain: None,
     };
     let read = import(&file, reading);
     let (mesh, diagnostics) = match read {

@@ -203,8 +203,11 @@ fn drive(section: &Section, (displacement, force): (&'static str, &'static str))
             Drive::Displacement(section.quantity(displacement, Dimension::Length, Bound::Any))
         }
         (false, true) => Drive::Force(section.quantity(force, Dimension::Force, Bound::Any)),
-        _ => {
-            let message = format!("a grip needs either {displacement} or {force}");
+        (given, _) => {
+            let message = match given {
+                true => format!("a grip has {displacement} or {force}, and not both"),
+                false => format!("a grip needs either {displacement} or {force}"),
+            };
             let hint = format!(
                 "{displacement} = \"0 mm\" holds it, {force} = \"0 N\" leaves it free to move"
             );
@@ -218,8 +221,10 @@ fn drive(section: &Section, (displacement, force): (&'static str, &'static str))
 fn read_centre(section: &Section) -> [f64; 2] {
     let centre = section.quantities("centre", Dimension::Length, Bound::Any);
     centre.try_into().unwrap_or_else(|_| {
-        let hint = "such as [\"0 mm\", \"0 mm\"]";
-        section.fault("centre", "must be two lengths", hint);
+        if section.has("centre") {
+            let hint = "such as [\"0 mm\", \"0 mm\"]";
+            section.fault("centre", "must be two lengths", hint);
+        }
         [f64::NAN; 2]
     })
 }
@@ -271,7 +276,11 @@ fn read_support(section: &Section) -> Option<(String, Support)> {
             }
         }
     };
-    section.unknown_keys();
+    section.unknown_keys_with(|key| {
+        let moves = ["x", "y", "x_force", "y_force"].contains(&key);
+        let hint = "a support that moves along x or y is of kind = \"displacement\", or \"grip\" if it is rigid";
+        moves.then(|| hint.to_owned())
+    });
     Some((group, support))
 }
 
