@@ -47,6 +47,8 @@ struct State {
     residual: Py<PyArray2<f64>>,
     force: f64,
     balance: f64,
+    /// The strain energy in mJ.
+    energy: f64,
     at_groups: Vec<GroupState>,
     multipliers: Vec<Multipliers>,
     convergence: Convergence,
@@ -71,22 +73,26 @@ impl Solution {
             .map(|step| solution.groups(step).unwrap_or_default().to_vec())
             .collect();
         let numbers = solution.balances.into_iter().zip(model.forces);
+        let numbers = numbers.zip(solution.energies);
         let others = numbers.zip(at_groups).zip(model.multipliers);
         let states = solution.states.into_iter().zip(others);
-        let states = states.map(|(state, (((balance, force), at_groups), multipliers))| {
-            let array = |values| Ok::<_, PyErr>(frozen_rows(py, values, 2)?.unbind());
-            Ok(State {
-                factor: state.factor,
-                displacement: array(state.displacement)?,
-                residual: array(state.residual)?,
-                force,
-                balance,
-                at_groups,
-                multipliers,
-                convergence: state.convergence,
-                sheet: OnceLock::new(),
-            })
-        });
+        let states = states.map(
+            |(state, ((((balance, force), energy), at_groups), multipliers))| {
+                let array = |values| Ok::<_, PyErr>(frozen_rows(py, values, 2)?.unbind());
+                Ok(State {
+                    factor: state.factor,
+                    displacement: array(state.displacement)?,
+                    residual: array(state.residual)?,
+                    force,
+                    balance,
+                    energy,
+                    at_groups,
+                    multipliers,
+                    convergence: state.convergence,
+                    sheet: OnceLock::new(),
+                })
+            },
+        );
         Ok(Self {
             states: states.collect::<PyResult<_>>()?,
             points: places(py, &solution.mesh.nodes)?.unbind(),
@@ -169,7 +175,7 @@ impl Solution {
     }
 
     fn energy(&self, step: usize) -> PyResult<f64> {
-        Ok(self.state(step)?.convergence.energy)
+        Ok(self.state(step)?.energy)
     }
 
     fn residuals(&self, step: usize) -> PyResult<Vec<f64>> {
