@@ -116,7 +116,7 @@ fn all_free<'a>(task: &Task<'a>, given: &[Edge]) -> Option<(NearestField<'a>, Ve
         let scored = Equations::new(task, &loaded).ok()?;
         let scored = scored.score_released(&free).ok()?;
         let loaded = (&scored.fit, &scored.linear.design, &scored.variances);
-        let probability = probability(loaded, &mut free, (&edges, level)).ok()?;
+        let probability = probability(loaded, &mut free, (&edges, level));
         edges[index].probability = Some(probability);
         if probability < level {
             return None;
@@ -145,10 +145,9 @@ fn from_loaded<'a>(
         }
         // Where no equilibrium with the free edge is found, the edge is not free.
         let mut trial = nearest_from(task, &freed, TRIAL_STEPS, &nearest_field);
-        let probability = match &mut trial {
-            Ok(trial) => probability(nearest_field.fitted(), trial, (&freed, level))?,
-            Err(_) => 0.0,
-        };
+        let probability = trial.as_mut().map_or(0.0, |trial| {
+            probability(nearest_field.fitted(), trial, (&freed, level))
+        });
         edges[index].probability = Some(probability);
         if let (Ok(trial), true) = (trial, probability >= level) {
             edges[index].condition = EdgeCondition::Free;
@@ -173,7 +172,7 @@ fn from_free<'a>(
         let Ok(trial) = nearest_from(task, &released, TRIAL_STEPS, &nearest_field) else {
             continue;
         };
-        let probability = probability(trial.fitted(), &mut nearest_field, (&edges, level))?;
+        let probability = probability(trial.fitted(), &mut nearest_field, (&edges, level));
         if probability < level {
             (edges, nearest_field) = (released, trial);
         }
@@ -208,7 +207,7 @@ fn probability(
     (loaded, design, variances): (&Fit, &DMatrix<f64>, &VarianceComponents),
     free: &mut NearestField,
     (edges, level): (&[Edge], f64),
-) -> Result<f64, Error> {
+) -> f64 {
     let count = loaded.residual.len() as f64;
     let more = (loaded.effective - free.fit.effective).max(1.0);
     let rest = (count - loaded.effective).max(1.0);
@@ -221,15 +220,17 @@ fn probability(
     let [before, after] = [loaded, &free.fit].map(|fit| free.misfit(fit, variances));
     let probability = of_misfits(before, after);
     if probability >= level {
-        return Ok(probability);
+        return probability;
     }
     let mesh_error = free.mesh_error(edges).cloned();
-    let granted = free.granted(edges, mesh_error.as_ref())?;
+    let Ok(granted) = free.granted(edges, mesh_error.as_ref()) else {
+        return probability;
+    };
     let by_granted = |fit, design| free.granted_misfit(&granted, (fit, design), variances);
-    Ok(of_misfits(
+    of_misfits(
         before - by_granted(loaded, design),
         after - by_granted(&free.fit, &free.linear.design),
-    ))
+    )
 }
 
 impl NearestField<'_> {
