@@ -307,7 +307,7 @@ fn wrong_input_ends_in_one_clear_message_and_nothing_is_written() {
         ),
         (
             &["plate.csv", "--mesh", "tetrahedra.msh"],
-            "Gmsh's type 4",
+            "is a 3-D mesh",
             "a mesh file is",
         ),
         (
