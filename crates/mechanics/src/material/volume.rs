@@ -27,7 +27,7 @@ pub const LARGEST_POISSON_RATIO: f64 = 0.4999;
 pub const POISSON_RATIO: Bound = Bound::Range(
     -0.9,
     LARGEST_POISSON_RATIO,
-    "between -0.9 and 0.4999 (0.5 is incompressible: a law without [volume])",
+    "between -0.9 and 0.4999; incompressible laws have none",
 );
 
 /// How a material resists a change of its volume.
