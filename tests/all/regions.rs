@@ -10,6 +10,7 @@ use gelbench::problem::{BoundaryProblem, Support};
 use gelbench::solve::NewtonSettings;
 use tempfile::TempDir;
 
+use crate::common::measured::right_force;
 use crate::common::{folder_with, gelbench, machine_report, number, one_line, root, words};
 
 /// Gmsh's file of a strip of 8 × 4 squares of 2 mm, whose cells below and above the middle are `lower` and `upper`; `others` cells in a row are
@@ -344,14 +345,7 @@ fn a_corrected_field_has_the_force_of_the_cards_of_all_regions() {
         let all = [&CORRECT[..], &edges, arguments];
         gelbench(folder.path(), &all.concat()).code(0);
         let report = machine_report(&folder.path().join("out"));
-        let forces = report["steps"][0]["corrected"]["forces"]
-            .as_array()
-            .unwrap();
-        let right = forces
-            .iter()
-            .find(|force| force["edge"] == "right")
-            .unwrap();
-        number(right, &["x_N", "value"])
+        right_force(&report, "x_N")[0]
     };
     let exact = 0.5 * 4.0 * (stress("neo-hooke") + stress("meunier-yeoh"));
     let of_option = force(&["--region", "upper=meunier-yeoh"]);

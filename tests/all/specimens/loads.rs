@@ -59,8 +59,8 @@ fn what_a_mesh_file_states_of_all_cells_counts() {
         *ELEMENT, TYPE=CPE4, ELSET=gel\n1, 1, 2, 5, 4\n2, 2, 3, 6, 5\n";
     fs::write(folder.path().join("a.inp"), mesh).unwrap();
     let done = gelbench(folder.path(), &["run", "small.toml"]);
-    let told = words(&done.get_output().stderr);
-    assert!(told.contains("those of plane strain (CPE)"), "{told}");
+    let printed = words(&done.get_output().stderr);
+    assert!(printed.contains("those of plane strain (CPE)"), "{printed}");
     let report = machine_report(&folder.path().join("output/small"));
     let held = &report["steps"][1]["finite_element"]["groups"]["left"];
     let force = held["force_N"][0].as_f64().unwrap();

@@ -222,8 +222,8 @@ fn probability(
     if probability >= level {
         return probability;
     }
-    let mesh_error = free.mesh_error(edges).cloned();
-    let Ok(granted) = free.granted(edges, mesh_error.as_ref()) else {
+    let mesh_error = free.mesh_error(edges).map(|error| error.markers.clone());
+    let Ok(granted) = free.granted(edges, mesh_error.as_deref()) else {
         return probability;
     };
     let by_granted = |fit, design| free.granted_misfit(&granted, (fit, design), variances);

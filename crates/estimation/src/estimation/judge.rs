@@ -64,7 +64,8 @@ pub fn judge(
     let Some(rows) = Rows::new(nearest_field, &sound, mesh_error) else {
         return Ok(Judgement::default());
     };
-    let granted = nearest_field.granted(edges, mesh_error)?;
+    let at_markers = mesh_error.map(|error| &error.markers[..]);
+    let granted = nearest_field.granted(edges, at_markers)?;
     let gap = nearest_field.equations.task.knowledge.edge_gap;
     let base = Model::of_search(&rows, nearest_field).granting(&rows, &granted);
     let mut noises = base.noises(&rows);

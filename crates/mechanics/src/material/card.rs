@@ -328,7 +328,7 @@ fn read_fit(section: &Section) -> FitRecord {
     record
 }
 
-/// Names of moduli by which a material is often known, and which no law has as parameters.
+/// Names under which moduli of a material at rest are often written, which most laws do not have as parameters.
 const MODULI: [&str; 7] = [
     "young",
     "youngs_modulus",

@@ -167,11 +167,18 @@ impl<'a> Model<'a> {
         After::new(self.energy, history)
     }
 
-    /// The strain energy in mJ of a state, without the potential of loads; NaN where the state is inverted.
-    pub fn strain_energy(&self, state: &State) -> f64 {
-        let history = self.remembered(state);
+    /// The strain energy in mJ of an equilibrium, without the potential of loads; NaN where it is inverted. Without loads it is the potential.
+    pub fn strain_energy(&self, equilibrium: &State) -> f64 {
+        if self.loads.is_empty() {
+            return equilibrium.convergence.energy;
+        }
+        self.energy_with(&self.remembered(equilibrium), equilibrium)
+    }
+
+    /// The energy in mJ of a state with a history; NaN where the state is inverted.
+    fn energy_with(&self, history: &[f64], state: &State) -> f64 {
         let mut residual = vec![0.0; state.displacement.len()];
-        let energy = self.energy_after(&history);
+        let energy = self.energy_after(history);
         Assembly::residual(&energy, &state.displacement, &mut residual).unwrap_or(f64::NAN)
     }
 
@@ -183,7 +190,7 @@ impl<'a> Model<'a> {
         }
         let dissipated = self.energy.dissipated(&history);
         Some(Work {
-            stored: self.strain_energy(state) - dissipated,
+            stored: self.energy_with(&history, state) - dissipated,
             dissipated,
         })
     }

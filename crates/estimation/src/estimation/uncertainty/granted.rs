@@ -4,7 +4,7 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::error::Error;
 use crate::estimation::input::Edge;
-use crate::estimation::mesh_error::{MESH_ERROR_FACTOR, MeshError};
+use crate::estimation::mesh_error::MESH_ERROR_FACTOR;
 use crate::estimation::regression::{Fit, VarianceComponents};
 use crate::estimation::search::NearestField;
 
@@ -17,15 +17,15 @@ pub struct Granted {
 }
 
 impl NearestField<'_> {
-    /// The changes that what is known admits: a picture of another scale, the mesh's own error, and free edges up to the gap away from those of
-    /// the mesh.
+    /// The changes that what is known admits: a picture of another scale, the mesh's own error at the markers, and free edges up to the gap away
+    /// from those of the mesh.
     ///
     /// # Errors
     /// Where the tangent cannot be used to solve systems.
     pub fn granted(
         &mut self,
         edges: &[Edge],
-        mesh_error: Option<&MeshError>,
+        mesh_error: Option<&[f64]>,
     ) -> Result<Vec<Granted>, Error> {
         let knowledge = self.equations.task.knowledge;
         let stated = knowledge.scale_deviation > 0.0;
@@ -35,7 +35,7 @@ impl NearestField<'_> {
         });
         let mut all: Vec<Granted> = scale.into_iter().collect();
         all.extend(mesh_error.map(|error| Granted {
-            design: DMatrix::from_column_slice(error.markers.len(), 1, &error.markers),
+            design: DMatrix::from_column_slice(error.len(), 1, error),
             deviation: Some(MESH_ERROR_FACTOR),
         }));
         let (strips, squares) = self.unknown_places(edges);

@@ -138,13 +138,17 @@ impl MarkerStudy {
 
     /// The edge, or else all edges, without whose stated conditions a frame is explained; nothing where it is not without them all.
     fn wrong_conditions(&self, frame: &Frame) -> Option<Diagnostic> {
+        if self.coarse.is_some() {
+            return None;
+        }
         let edges = self.conditions.edges.iter();
         let stated = edges.filter(|(_, condition)| *condition != EdgeCondition::Unknown);
         let stated: Vec<&str> = stated.map(|(name, _)| name.as_str()).collect();
         if stated.is_empty() || !self.is_explained_without(&stated, frame) {
             return None;
         }
-        let mut each = stated.chunks(1);
+        // One alone is all of them.
+        let mut each = stated.chunks(1).filter(|_| stated.len() > 1);
         let one = each.find(|name| self.is_explained_without(name, frame));
         let names = one.unwrap_or(&stated).join(" and ");
         let message = format!(
@@ -168,7 +172,7 @@ impl MarkerStudy {
             }
         }
         let estimate = study.estimate_frame(frame);
-        self.coarse.is_none() && estimate.is_ok_and(|estimate| estimate.is_explained())
+        estimate.is_ok_and(|estimate| estimate.is_explained())
     }
 
     /// The mistake that explains the most, and the estimate of the field that was meant.

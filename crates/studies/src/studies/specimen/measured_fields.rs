@@ -25,6 +25,8 @@ pub(super) struct State {
     lines: Vec<Vec<Sample>>,
     /// The lengths of the extensometers at rest and now, in mm.
     pub lengths: Vec<[f64; 2]>,
+    /// The force of supports and loads on the measured group in N.
+    force: [f64; 2],
 }
 
 /// All measurements, with the models whose sheet they are taken from.
@@ -134,36 +136,17 @@ impl<'a> MeasuredFields<'a> {
 
     /// The axis of the larger force on the measured group.
     pub(super) fn force_axis(&self) -> usize {
-        let models = self.models.iter().enumerate();
-        let last =
-            models.filter_map(|(model, series)| Some((model, series.states.len().checked_sub(1)?)));
-        larger_axis(last.map(|(model, step)| self.force_on_group(model, step)))
-    }
-
-    /// The force of supports and loads on the measured group in N.
-    fn force_on_group(&self, model: usize, step: usize) -> [f64; 2] {
-        let (specimen, series) = (self.specimen, &self.models[model]);
-        let state = &series.states[step];
-        let now = (specimen.factors[step], state.displacement);
-        let load = specimen.problem.load_on(series.mesh, &specimen.group, now);
-        let load = load.unwrap_or_default();
-        let group = self.group();
-        [0, 1].map(|axis| state.groups[group].force[axis] + load[axis])
-    }
-
-    fn group(&self) -> usize {
-        let groups = self.specimen.groups();
-        let measured = groups.iter().position(|name| *name == self.specimen.group);
-        measured.unwrap_or(0)
+        let last = self.states.chunk_by(|a, b| a.model == b.model);
+        larger_axis(last.filter_map(|of_model| Some(of_model.last()?.force)))
     }
 
     /// What happens at the measured group.
     pub(super) fn group_state(&self, state: &State) -> &GroupState {
-        &self.models[state.model].states[state.step].groups[self.group()]
+        &self.models[state.model].states[state.step].groups[self.specimen.group_index()]
     }
 
     fn force(&self, state: &State) -> f64 {
-        self.force_on_group(state.model, state.step)[self.force_axis()]
+        state.force[self.force_axis()]
     }
 
     /// The force of the measured group over something, of the models that are drawn.
@@ -341,7 +324,17 @@ fn measure(
             .map(|line| samples.by_ref().take(line.count).collect())
             .collect(),
         lengths: lengths.collect(),
+        force: force_on_group(specimen, model, step),
     })
+}
+
+/// The force of supports and loads on the measured group in N.
+fn force_on_group(specimen: &Specimen, model: &ModelSeries, step: usize) -> [f64; 2] {
+    let state = &model.states[step];
+    let now = (specimen.factors[step], state.displacement);
+    let load = specimen.problem.load_on(model.mesh, &specimen.group, now);
+    let (group, load) = (specimen.group_index(), load.unwrap_or_default());
+    [0, 1].map(|axis| state.groups[group].force[axis] + load[axis])
 }
 
 /// Values that are rounding beside others of their dimension are none.

@@ -345,4 +345,11 @@ impl Specimen {
         }
         all
     }
+
+    /// The number of the measured group among [`Self::groups`], of which it is one.
+    pub fn group_index(&self) -> usize {
+        let groups = self.groups();
+        let before = groups.iter().take_while(|group| **group != self.group);
+        before.count()
+    }
 }

@@ -73,9 +73,7 @@ pub fn one_model(
 
 /// The force on the measured group in each state, along the axis of the larger component in the last one.
 fn measured_forces(specimen: &Specimen, solution: &Solution) -> Vec<f64> {
-    let groups = specimen.groups();
-    let index = groups.iter().position(|group| *group == specimen.group);
-    let index = index.expect("the measured group is one of them");
+    let index = specimen.group_index();
     let force = |step| solution.groups(step).map(|groups| groups[index].force);
     let forces: Vec<[f64; 2]> = (0..solution.reached()).filter_map(force).collect();
     let axis = forces
