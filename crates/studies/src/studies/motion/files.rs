@@ -345,3 +345,15 @@ fn written(value: f64) -> String {
         value => value.to_string(),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_of_a_table_are_read_back() {
+        for value in [0.0, 0.5, 2.5, -1e-7, 3.2e-5, -12345.678, 1e-300] {
+            assert_eq!(written(value).parse::<f64>(), Ok(value));
+        }
+    }
+}
