@@ -16,8 +16,7 @@ use rand_distr::{Distribution, StandardNormal};
 use serde_json::Value;
 use tempfile::TempDir;
 
-use crate::common::measured::right_force;
-use crate::common::{gelbench, one_line, report_of_correction, root};
+use crate::common::{gelbench, number, one_line, report_of_correction, root};
 
 const SIZE: [f64; 2] = [60.0, 30.0];
 const THICKNESS: f64 = 20.0;
@@ -106,8 +105,16 @@ fn corrected(folder: &Path, more: &[&str], codes: &[i32]) -> Value {
 
 /// Value and interval of the force on the right along x.
 fn force(report: &Value) -> (f64, [f64; 2]) {
-    let [force, low, high] = right_force(report, "x_N");
-    (force, [low, high])
+    let forces = report["steps"][0]["corrected"]["forces"]
+        .as_array()
+        .unwrap();
+    let right = forces
+        .iter()
+        .find(|force| force["edge"] == "right")
+        .unwrap();
+    let interval = &right["x_N"]["interval"];
+    let ends = [&interval[0], &interval[1]].map(|end| end.as_f64().unwrap_or(f64::NAN));
+    (number(right, &["x_N", "value"]), ends)
 }
 
 #[test]
