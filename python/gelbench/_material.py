@@ -269,6 +269,11 @@ class Material:
         return self._card.youngs_modulus()
 
     @property
+    def swelling_stretch(self) -> float:
+        """Length of the freely swollen gel, which is at rest here, over that as prepared; 1 for laws without swelling."""
+        return self._card.swelling_stretch()
+
+    @property
     def stretch_range(self) -> tuple[float, float]:
         """The range of stretches of its calibration."""
         return self._card.stretch_range

@@ -75,7 +75,7 @@ class State:
 
     @property
     def force(self) -> float:
-        """Force on the moving grip of a plate, or on the measured group of a specimen [N]."""
+        """Force on the moving grip of a plate, or of supports and loads on the measured group of a specimen [N]."""
         return self._solution._core.forces()[self._step]
 
     @property

@@ -117,6 +117,10 @@ impl HyperelasticLaw for Watched {
         Arc::clone(&self.law).with_volume(volume)
     }
 
+    fn swelling_stretch(&self) -> f64 {
+        self.law.swelling_stretch()
+    }
+
     fn statements(&self) -> Vec<(&'static str, String)> {
         self.law.statements()
     }

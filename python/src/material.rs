@@ -249,6 +249,10 @@ impl MaterialCard {
         caught(py, || self.card.law.shear_modulus())
     }
 
+    fn swelling_stretch(&self) -> f64 {
+        self.card.law.swelling_stretch()
+    }
+
     fn youngs_modulus(&self, py: Python<'_>) -> PyResult<f64> {
         caught(py, || self.card.youngs_modulus())
     }

@@ -116,3 +116,29 @@ def test_faults_of_supports_and_groups_are_told():
         strip(supports={"left": "clamp", "riht": {"x": 1}}).solve()
     with pytest.raises(gb.InputError, match="hole_size"):
         strip(hole_size=3)
+
+
+def test_a_gel_swells_between_its_grips(root):
+    gel = gb.Material.from_card(root / "examples/gel.toml")
+    stretch = gel.swelling_stretch
+    assert stretch == pytest.approx(1.026663, abs=1e-6)
+    assert gb.Material("gent", mu=0.05, jm=30).swelling_stretch == 1
+    # Grips that stay where the gel was prepared, across as well: the force is that of a strip held back by 1/stretch in its plane.
+    held = {axis: f"{1 / stretch - 1} * {axis.upper()}" for axis in "xy"}
+    size = dict(length=100 * stretch, width=40 * stretch, thickness=2 * stretch)
+    sheet = gb.Specimen("strip", **size, material=gel, cells=8, measured="right", supports={"left": held, "right": held, "bottom": held, "top": held})
+    stress = gel.stress(1 / stretch, test="equibiaxial")
+    force = sheet.solve("finite-element", [1.0]).forces[-1]
+    assert force == pytest.approx(stress * size["width"] * size["thickness"], rel=1e-9)
+
+
+def test_the_force_of_a_load_is_that_of_its_group():
+    sheet = gb.Specimen(
+        "strip", length=20, width=10, thickness=1, material="neo-hooke", cells=8, measured="right",
+        supports={"left": "roller", "bottom-left": "clamp"}, loads={"right": {"kind": "traction", "x": 0.05}},
+    )  # fmt: skip
+    solution = sheet.solve("finite-element", [0.5, 1.0])
+    np.testing.assert_allclose(solution.forces, [0.25, 0.5], rtol=1e-12)
+    neo_hooke = gb.Material.from_card("neo-hooke")
+    displacement = solution.last.groups["right"].displacement[0]
+    assert neo_hooke.stress(1 + displacement / 20) == pytest.approx(0.05, rel=1e-9)

@@ -118,6 +118,11 @@ pub trait BodyLaw: Clone + Send + Sync + Debug {
     fn statements(&self) -> Vec<(&'static str, String)> {
         Vec::new()
     }
+
+    /// As [`HyperelasticLaw::swelling_stretch`].
+    fn swelling_stretch(&self) -> f64 {
+        1.0
+    }
 }
 
 /// A sheet of a body that changes its volume, in plane stress or in plane strain.
@@ -323,6 +328,10 @@ impl<L: BodyLaw + 'static> HyperelasticLaw for BodySheet<L> {
 
     fn statements(&self) -> Vec<(&'static str, String)> {
         self.law.statements()
+    }
+
+    fn swelling_stretch(&self) -> f64 {
+        self.law.swelling_stretch()
     }
 
     /// κ = W_bb − 4/3 μ at rest.

@@ -159,6 +159,11 @@ pub trait HyperelasticLaw: Send + Sync + std::fmt::Debug {
         Vec::new()
     }
 
+    /// The length of the freely swollen gel, at rest here, over that as prepared; 1 where nothing swells.
+    fn swelling_stretch(&self) -> f64 {
+        1.0
+    }
+
     /// Whether all directions of the sheet are equivalent.
     fn is_isotropic(&self) -> bool {
         true

@@ -219,18 +219,22 @@ impl BodyLaw for SwollenNetwork {
         chains(self.modulus, at, self.volume(at.volume_change()))
     }
 
+    fn swelling_stretch(&self) -> f64 {
+        (self.network.preparation_fraction / self.fraction).cbrt()
+    }
+
     fn statements(&self) -> Vec<(&'static str, String)> {
         let network = &self.network;
-        let swelling = network.preparation_fraction / self.fraction;
+        let stretch = self.swelling_stretch();
         vec![
             (
                 "freely swollen",
                 format!(
-                    "polymer fraction {:.6}, {:.5} times the dry volume; {swelling:.5} times the volume and {:.6} times the length \
+                    "polymer fraction {:.6}, {:.5} times the dry volume; {:.5} times the volume and {stretch:.6} times the length \
                      as prepared",
                     self.fraction,
                     1.0 / self.fraction,
-                    swelling.cbrt()
+                    stretch.powi(3)
                 ),
             ),
             (

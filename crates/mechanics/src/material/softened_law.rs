@@ -105,6 +105,10 @@ impl HyperelasticLaw for SoftenedLaw {
         all
     }
 
+    fn swelling_stretch(&self) -> f64 {
+        self.virgin.swelling_stretch()
+    }
+
     fn is_objective(&self) -> bool {
         self.virgin.is_objective()
     }

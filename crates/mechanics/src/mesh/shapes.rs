@@ -1,5 +1,7 @@
 //! Flat specimens given by their dimensions, meshed with curved blocks.
 
+use std::collections::BTreeSet;
+
 use super::blocks::{Block, mesh_of_blocks};
 use super::cell_shape::CellShape;
 use super::cells::Mesh;
@@ -18,7 +20,7 @@ pub use rakes::Rakes;
 /// A specimen by its dimensions in mm. All lie along X from 0, with the axis Y = 0 in their middle, except the ring.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Shape {
-    /// A rectangle; groups `left`, `right`, `bottom`, `top`.
+    /// A rectangle; groups `left`, `right`, `bottom`, `top`, and its corners, such as `bottom-left`.
     Strip {
         /// Length and width.
         size: [f64; 2],
@@ -48,7 +50,8 @@ pub enum Shape {
         /// Length of an arc's projection on X.
         shoulder: f64,
     },
-    /// A sector of a ring about the origin that begins on the X axis; groups `inside`, `outside`, `start`, `end`.
+    /// A sector of a ring about the origin that begins on the X axis; groups `inside`, `outside`, `start`, `end`, and the
+    /// corners, such as `inside-start`.
     RingSector {
         /// Radii.
         radii: [f64; 2],
@@ -91,6 +94,7 @@ impl Shape {
             block.cells = block.cells.map(|count| count << halvings);
         }
         let mut mesh = mesh_of_blocks(&blocks, kind);
+        name_corners(&mut mesh);
         if let Self::SquareOnRakes(rakes) = self {
             rakes.name_tines(&mut mesh);
         }
@@ -313,6 +317,25 @@ impl Shape {
         };
         let least = distances.iter().copied().fold(f64::INFINITY, f64::min);
         [least, distances.into_iter().fold(0.0, f64::max)]
+    }
+}
+
+/// Names the corner of two sides after both: `bottom-left`, or `inside-start` of a ring.
+fn name_corners(mesh: &mut Mesh) {
+    let pairs = [["bottom", "top"], ["left", "right"]];
+    let of_ring = [["inside", "outside"], ["start", "end"]];
+    for [first, second] in [pairs, of_ring] {
+        for (a, b) in first.into_iter().flat_map(|a| second.map(|b| (a, b))) {
+            let nodes = |side| mesh.groups().get(side).map(|group| &group.nodes);
+            let (Some(of_a), Some(of_b)) = (nodes(a), nodes(b)) else {
+                continue;
+            };
+            let common = of_a.iter().filter(|node| of_b.contains(node));
+            let corner: BTreeSet<usize> = common.copied().collect();
+            if corner.len() == 1 {
+                mesh.name_nodes(&format!("{a}-{b}"), &corner);
+            }
+        }
     }
 }
 

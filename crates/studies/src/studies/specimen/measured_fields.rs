@@ -324,17 +324,8 @@ fn measure(
             .map(|line| samples.by_ref().take(line.count).collect())
             .collect(),
         lengths: lengths.collect(),
-        force: force_on_group(specimen, model, step),
+        force: specimen.force_on_group(step, model.mesh, u, model.states[step].groups),
     })
-}
-
-/// The force of supports and loads on the measured group in N.
-fn force_on_group(specimen: &Specimen, model: &ModelSeries, step: usize) -> [f64; 2] {
-    let state = &model.states[step];
-    let now = (specimen.factors[step], state.displacement);
-    let load = specimen.problem.load_on(model.mesh, &specimen.group, now);
-    let (group, load) = (specimen.group_index(), load.unwrap_or_default());
-    [0, 1].map(|axis| state.groups[group].force[axis] + load[axis])
 }
 
 /// Values that are rounding beside others of their dimension are none.

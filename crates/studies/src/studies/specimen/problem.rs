@@ -9,7 +9,7 @@ use crate::mass_spring::MassSpring;
 use crate::material::Card;
 use crate::mesh::{CellShape, Mesh};
 use crate::problem::sheet_energy::SheetEnergy;
-use crate::problem::{BoundaryProblem, ClampedPlate, Drive, Model, Support};
+use crate::problem::{BoundaryProblem, ClampedPlate, Drive, GroupState, Model, Support};
 use crate::results::Sheet;
 use crate::solve::{LinearSolver, NewtonSettings, Remembering};
 use crate::studies::pictures::Pictures;
@@ -351,5 +351,21 @@ impl Specimen {
         let groups = self.groups();
         let before = groups.iter().take_while(|group| **group != self.group);
         before.count()
+    }
+
+    /// The force in N of supports and loads on the measured group in the state of a load factor, whose groups are those of [`Self::groups`].
+    pub fn force_on_group(
+        &self,
+        step: usize,
+        mesh: &Mesh,
+        u: &[f64],
+        groups: &[GroupState],
+    ) -> [f64; 2] {
+        let load = self
+            .problem
+            .load_on(mesh, &self.group, (self.factors[step], u));
+        let load = load.unwrap_or_default();
+        let supports = groups[self.group_index()].force;
+        [0, 1].map(|axis| supports[axis] + load[axis])
     }
 }

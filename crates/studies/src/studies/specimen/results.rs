@@ -71,10 +71,13 @@ pub fn one_model(
     })
 }
 
-/// The force on the measured group in each state, along the axis of the larger component in the last one.
+/// The force of supports and loads on the measured group in each state, along the axis of the larger component in the last one.
 fn measured_forces(specimen: &Specimen, solution: &Solution) -> Vec<f64> {
-    let index = specimen.group_index();
-    let force = |step| solution.groups(step).map(|groups| groups[index].force);
+    let force = |step: usize| {
+        let displacement = &solution.states[step].displacement;
+        let groups = solution.groups(step)?;
+        Some(specimen.force_on_group(step, &solution.mesh, displacement, groups))
+    };
     let forces: Vec<[f64; 2]> = (0..solution.reached()).filter_map(force).collect();
     let axis = forces
         .last()
