@@ -33,6 +33,15 @@ NAMES = {
 
 NUMBERS = {name: number for number, name in NAMES.items()}
 
+GMSH = {
+    "Triangle 3": "triangle",
+    "Quadrilateral 4": "quad",
+    "Triangle 6": "triangle6",
+    "Quadrilateral 8": "quad8",
+    "Quadrilateral 9": "quad9",
+}
+"""Cell names of meshio by gmsh's."""
+
 
 def cells_of(blocks: list[tuple[int, Integers, Integers]]) -> Cells:
     """Cells by their names."""
@@ -86,12 +95,39 @@ def to_meshio(
 def read_mesh(
     mesh: Any,
 ) -> tuple[Floats, dict[str, Integers], dict[str, Integers], dict[str, Integers]]:
-    """Points, cells, groups of nodes and groups of lines of a mesh of meshio or a grid of PyVista."""
+    """Points, cells, groups of nodes and groups of lines of a mesh of meshio, a grid of PyVista or the model of gmsh."""
     if hasattr(mesh, "cells_dict") and hasattr(mesh, "celltypes"):
         return np.asarray(mesh.points), _of_pyvista(mesh), {}, {}
     if hasattr(mesh, "cells") and hasattr(mesh, "point_sets"):
         return np.asarray(mesh.points), *_of_meshio(mesh)
-    raise fault("points", f"{type(mesh).__name__} is not a mesh", "give a meshio.Mesh, a pyvista.UnstructuredGrid, or points and cells")
+    if hasattr(mesh, "model") and hasattr(mesh, "write"):
+        return _of_gmsh(mesh.model)
+    hint = "give a file, a meshio.Mesh, a pyvista.UnstructuredGrid, the module gmsh with its model, or points and cells"
+    raise fault("points", f"{type(mesh).__name__} is not a mesh", hint)
+
+
+def _of_gmsh(model: Any) -> tuple[Floats, dict[str, Integers], dict[str, Integers], dict[str, Integers]]:
+    tags, places, _ = model.mesh.getNodes()
+    numbers = np.zeros(int(max(tags, default=0)) + 1, dtype=np.int64)
+    numbers[tags] = np.arange(len(tags))
+
+    def blocks(dimension: int, tag: int) -> list[tuple[str, Integers]]:
+        kinds, _, nodes = model.mesh.getElements(dimension, tag)
+        known = [(model.mesh.getElementProperties(kind), own) for kind, own in zip(kinds, nodes, strict=True)]
+        return [(GMSH.get(str(name), str(name)), numbers[own].reshape(-1, count)) for (name, _, _, count, *_), own in known]
+
+    cells: dict[str, list[Integers]] = {}
+    for name, block in blocks(2, -1):
+        cells.setdefault(name, []).append(block)
+    groups: dict[int, dict[str, list[Integers]]] = {0: {}, 1: {}}
+    for dimension, tag in model.getPhysicalGroups():
+        name = model.getPhysicalName(dimension, tag) or f"physical-{tag}"
+        for entity in model.getEntitiesForPhysicalGroup(dimension, tag):
+            for _, block in blocks(dimension, entity) if dimension < 2 else []:
+                groups[dimension].setdefault(name, []).append(block[:, : dimension + 1])
+    joined = {name: np.concatenate(parts) for name, parts in cells.items()}
+    nodes = {name: np.concatenate(parts).ravel() for name, parts in groups[0].items()}
+    return places.reshape(-1, 3), joined, nodes, {name: np.concatenate(parts) for name, parts in groups[1].items()}
 
 
 def _of_pyvista(grid: Any) -> dict[str, Integers]:

@@ -156,6 +156,7 @@ def correct(
         Edges of known displacement: ``{"left": {"ux": 0, "uy": 0}}`` [mm].
     force : mapping, optional
         Measured forces of grips on the specimen [N]: ``{"right": {"x": 1.2, "x_deviation": 0.02}}``; without a deviation 1 %.
+        Or columns of `forces`: ``{"right": {"x_column": "Load"}}``.
     noise : quantity, optional
         Standard deviation of the displacement components [mm]; estimated if omitted.
     edge_gap : quantity, optional
@@ -183,7 +184,7 @@ def correct(
         The specimen's mesh (a file, or a mesh of meshio, PyVista or gmsh) or outline (a file, an array n × 2, or a list of these of which
         the inner ones are holes [mm]), and how it is meshed; see the same options. `mesh_unit` is a unit of length.
     forces : path, DataFrame or mapping, optional
-        A testing machine's table for the frames; `conditions` names its columns.
+        A testing machine's table for the frames; `force` or `conditions` names its columns.
     spacing, subset, subset_shape, mask
         How images are followed, as of `gelbench.track`.
     progress : callable or tqdm bar, optional
@@ -293,20 +294,23 @@ def _edges(
 
 def _forces(force: Mapping[str, Mapping[str, Quantity]]) -> list[dict[str, Any]]:
     rows: list[dict[str, Any]] = []
-    keys = ("x", "x_deviation", "y", "y_deviation")
+    keys = [axis + key for axis in "xy" for key in ("", "_column", "_deviation")]
     for edge, values in force.items():
         if not isinstance(values, Mapping):
             raise fault(f"force.{edge}", f"is {values!r}", 'give its components, such as {"x": 2.88, "x_deviation": 0.05}')
         for key in values:
             if key not in keys:
                 raise fault(f"force.{edge}.{key}", "is not a key of a force", f"keys are {', '.join(keys)}")
-            if key.endswith("_deviation") and key[0] not in values:
+            if key.endswith("_deviation") and not values.keys() & {key[0], f"{key[0]}_column"}:
                 raise fault(f"force.{edge}.{key}", "belongs to a force that is not given", f"give {key[0]} too")
         for axis in ("x", "y"):
+            row = {"edge": edge, "axis": axis}
             if axis in values:
-                row = {"edge": edge, "axis": axis, "force": text(values[axis], "N", f"force.{edge}.{axis}")}
-                if f"{axis}_deviation" in values:
-                    deviation = values[f"{axis}_deviation"]
-                    row["standard_deviation"] = text(deviation, "N", f"force.{edge}.{axis}_deviation")
+                row["force"] = text(values[axis], "N", f"force.{edge}.{axis}")
+            if f"{axis}_column" in values:
+                row["column"] = str(values[f"{axis}_column"])
+            if f"{axis}_deviation" in values:
+                row["standard_deviation"] = text(values[f"{axis}_deviation"], "N", f"force.{edge}.{axis}_deviation")
+            if "force" in row or "column" in row:
                 rows.append(row)
     return rows

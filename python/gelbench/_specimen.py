@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping, Sequence
 from typing import Any, TypeAlias
 
@@ -175,7 +176,7 @@ class Specimen(StudyInMemory):
 
         Parameters
         ----------
-        points : array_like, meshio.Mesh or pyvista.UnstructuredGrid
+        points : array_like, path, meshio.Mesh, pyvista.UnstructuredGrid or the module gmsh with its model
             Nodes, n × 2 or n × 3 with one z; or a whole mesh, whose named sets of nodes and lines are groups.
         cells : mapping, optional
             Nodes of the cells, m × k, counted from 0, by kind: ``triangle``, ``triangle6``, ``quad``, ``quad8``, ``quad9``.
@@ -195,6 +196,16 @@ class Specimen(StudyInMemory):
         -----
         Nodes without a cell are left out: fields have the order of `Solution.points`.
         """
+        specimen: dict[str, Any] = {"shape": "mesh", "file": "the mesh", "file_unit": unit}
+        if merge_nodes is not None:
+            specimen["merge_nodes"] = text(merge_nodes, "mm", "merge_nodes")
+        if allowed:
+            specimen["allowed"] = list(allowed)
+        made = cls.__new__(cls)
+        if isinstance(points, (str, os.PathLike)):
+            specimen["file"] = os.path.abspath(points)
+            made._set(specimen, None, thickness, material, supports, measured, loads, settings)
+            return made
         nodes: dict[str, Any] = {}
         lines: dict[str, Any] = {}
         own: Any = cells
@@ -218,12 +229,6 @@ class Specimen(StudyInMemory):
             {name: _integers(group, "groups", 1) for name, group in nodes.items()},
             {name: _integers(group, "groups", 2) for name, group in lines.items()},
         )
-        specimen: dict[str, Any] = {"shape": "mesh", "file": "the mesh", "file_unit": unit}
-        if merge_nodes is not None:
-            specimen["merge_nodes"] = text(merge_nodes, "mm", "merge_nodes")
-        if allowed:
-            specimen["allowed"] = list(allowed)
-        made = cls.__new__(cls)
         made._set(specimen, mesh, thickness, material, supports, measured, loads, settings)
         return made
 

@@ -108,6 +108,20 @@ def test_markers_in_arrays_are_those_of_the_file(root, corrected):
     assert own.forces["right"][0].value == pytest.approx(corrected.forces["right"][0].value, rel=1e-6)
 
 
+def test_a_table_of_forces_in_memory_is_that_of_the_file(root):
+    pandas = pytest.importorskip("pandas")
+    file = root / "examples/measured_plate_forces.csv"
+    table = pandas.read_csv(file, comment="#")
+    kinds = [file, table, {name: table[name].to_numpy() for name in table}]
+    known = dict(rigid=["left", "right"], free=["top", "bottom"], edge_gap=0, force={"right": {"x_column": "force"}})
+    found = [gb.correct(root / "examples/measured_plate.csv", "pva-10", 2, forces=own, **known).json for own in kinds]
+    for one in found:
+        del one["times_s"]
+    assert found[0]["steps"] == found[1]["steps"] == found[2]["steps"]
+    measured = found[0]["steps"][-1]["corrected"]["measured_forces"]
+    assert [force["measured_N"] for force in measured] == [12.87]
+
+
 @pytest.mark.parametrize("scale_error", ["0.5 %", 0.005])
 def test_intervals_hold_a_scale_that_is_stated(root, corrected, scale_error):
     found = gb.correct(
@@ -189,7 +203,7 @@ def test_a_history_needs_a_law_and_is_of_one_kind(root):
 @pytest.mark.parametrize(
     ("said", "told"),
     [
-        ({"force": {"right": {"x": 2.88, "x_devation": 0.5}}}, "x_devation.*x, x_deviation, y, y_deviation"),
+        ({"force": {"right": {"x": 2.88, "x_devation": 0.5}}}, "x_devation.*x, x_column, x_deviation, y"),
         ({"force": {"right": {"x_deviation": 0.5}}}, "give x too"),
         ({"force": {"right": 2.88}}, "force.right"),
         ({"known": {"left": "fixed"}}, "known.left"),

@@ -92,6 +92,43 @@ def test_meshes_of_meshio_and_pyvista_pass_straight_in():
     assert np.array_equal(of_mesh(picture).solve("mass-spring").displacement, usual.displacement)
 
 
+@pytest.fixture
+def gmsh():
+    """The module gmsh with a strip of 60 × 20 mm, whose right side is named `end`."""
+    try:
+        import gmsh
+    except (ImportError, OSError) as error:  # its library needs those of a desktop
+        pytest.skip(f"gmsh: {error}")
+    gmsh.initialize(interruptible=False)
+    gmsh.option.setNumber("General.Terminal", 0)
+    rectangle = gmsh.model.occ.addRectangle(0, -10, 0, 60, 20)
+    gmsh.model.occ.synchronize()
+    end = gmsh.model.getEntitiesInBoundingBox(59, -11, -1, 61, 11, 1, 1)
+    gmsh.model.addPhysicalGroup(1, [tag for _, tag in end], name="end")
+    gmsh.model.addPhysicalGroup(2, [rectangle], name="gel")
+    gmsh.option.setNumber("Mesh.MeshSizeMax", 5)
+    gmsh.model.mesh.generate(2)
+    yield gmsh
+    gmsh.finalize()
+
+
+@pytest.mark.parametrize("order", [1, 2])
+def test_the_model_of_gmsh_is_a_mesh_as_is_its_file(gmsh, tmp_path, order):
+    gmsh.model.mesh.setOrder(order)
+    gmsh.write(str(tmp_path / "strip.msh"))
+    supports = {"left": "clamp", "end": {"x": 18, "y": 0}}
+    solve = dict(model="finite-element", factors=[1.0])
+    meshes = (gmsh, tmp_path / "strip.msh", str(tmp_path / "strip.msh"))
+    in_memory, *of_files = (of_mesh(mesh, supports=supports, measured="end").solve(**solve) for mesh in meshes)
+    for solution in of_files:
+        assert solution.force == pytest.approx(in_memory.force, rel=1e-9)
+    places = np.array([(x, y) for x in np.linspace(0, 60, 31) for y in np.linspace(-10, 10, 11)])
+    markers = np.hstack([places, places * (0.4, 1.4**-0.5 - 1)])
+    found = gb.correct(markers, "neo-hooke", 0.5, mesh=gmsh, free=["bottom", "top"])
+    force = 0.5 * 20 * gb.Material.from_card("neo-hooke").stress(1.4)
+    assert found.forces["end"][0].value == pytest.approx(force, rel=1e-3)
+
+
 @pytest.mark.parametrize(
     ("change", "told"),
     [
@@ -103,7 +140,8 @@ def test_meshes_of_meshio_and_pyvista_pass_straight_in():
         (lambda points, cells: (points, {"hexahedron": cells}), "hexahedron"),
         (lambda points, cells: (np.where(points == 60.0, np.nan, points), {"quad": cells}), "not a number"),
         (lambda points, cells: (points, {"quad": cells}, {"end": [[1, 2, 3]]}), "end"),
-        (lambda points, cells: ("mesh.msh",), "not a mesh"),
+        (lambda points, cells: ("mesh.msh",), "mesh.msh"),
+        (lambda points, cells: (cells.tolist,), "not a mesh"),
     ],
 )
 def test_what_is_no_mesh_is_refused_in_words(change, told):
