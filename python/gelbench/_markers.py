@@ -103,6 +103,8 @@ def correct(
     noise: Quantity | None = None,
     edge_gap: Quantity | None = None,
     scale_error: Quantity | None = None,
+    frame_interval: Quantity | None = None,
+    clock_offset: Quantity | None = None,
     robust: str | None = None,
     physics: str | None = None,
     fit: Sequence[str] = (),
@@ -164,6 +166,9 @@ def correct(
     scale_error : quantity, optional
         Standard deviation of the scale of the pictures, such as ``"0.1 %"`` or 0.001: a specimen 1 mm nearer to a
         camera 1 m away seems to grow by this much.
+    frame_interval, clock_offset : quantity, optional
+        Time from one frame to the next where frames have none, and the time of the machine's table `forces` when that of the frames
+        is at zero [s].
     robust : {"no", "huber", "tukey"}, optional
         Weights of outlying markers.
     physics : {"exact", "weighted"}, optional
@@ -215,6 +220,8 @@ def correct(
         "noise": noise if noise is None else text(noise, "mm", "noise"),
         "edge_gap": edge_gap if edge_gap is None else text(edge_gap, "mm", "edge_gap"),
         "scale_error": scale_error if scale_error is None else text(scale_error, "", "scale_error"),
+        "frame_interval": frame_interval if frame_interval is None else text(frame_interval, "s", "frame_interval"),
+        "clock_offset": clock_offset if clock_offset is None else text(clock_offset, "s", "clock_offset"),
         "robust": robust,
         "physics": physics,
         "fit": ([fit] if isinstance(fit, str) else list(fit)) or None,

@@ -5,7 +5,9 @@ use std::path::PathBuf;
 use clap::{ArgAction, Args};
 
 use super::values::{CELLS, HOLES, PLACES, Y_AXIS};
-use super::values::{encoding, force, force_column, gap, length, region, scale_error, size, unit};
+use super::values::{
+    encoding, force, force_column, gap, interval, length, region, scale_error, size, time, unit,
+};
 use crate::command::choice::one_of;
 use crate::command::images::ImageOptions;
 use crate::command::large::Large;
@@ -58,6 +60,12 @@ pub struct Options {
     /// "right x Load ± 0.02 N"; a - before the name takes the negative force
     #[arg(long, value_name = "COLUMN", value_parser = force_column, requires = "forces")]
     pub force_column: Vec<ForceColumn>,
+    /// Time from one frame to the next, such as "0.5 s", where frames have none: number n is taken at n times this
+    #[arg(long, value_name = "TIME", value_parser = interval, requires = "forces", allow_hyphen_values = true)]
+    pub frame_interval: Option<f64>,
+    /// The time of the testing machine when that of the frames is at zero, such as "1.2 s"
+    #[arg(long, value_name = "TIME", value_parser = time, requires = "forces", allow_hyphen_values = true)]
+    pub clock_offset: Option<f64>,
     /// Parameters of the law to estimate with the field, or `all`; a force must be measured
     #[arg(long, value_name = "PARAMETER", value_delimiter = ',')]
     pub fit: Vec<String>,

@@ -54,6 +54,8 @@ fn conditions(options: &Options) -> Result<Conditions, Error> {
     conditions
         .force_columns
         .extend_from_slice(&options.force_column);
+    conditions.clock.interval = options.frame_interval.or(conditions.clock.interval);
+    conditions.clock.offset = options.clock_offset.unwrap_or(conditions.clock.offset);
     conditions.fit.extend_from_slice(&options.fit);
     conditions.regions.extend_from_slice(&options.region);
     conditions.sheet = options.sheet.or(conditions.sheet);

@@ -81,6 +81,17 @@ fn newtons(text: &str) -> Result<f64, Diagnostic> {
     quantity(text, Dimension::Force, |_| true, "", "")
 }
 
+/// A time in s.
+pub fn time(text: &str) -> Result<f64, Diagnostic> {
+    quantity(text, Dimension::Time, f64::is_finite, "", "1.2 s")
+}
+
+/// A time greater than zero in s.
+pub fn interval(text: &str) -> Result<f64, Diagnostic> {
+    let wanted = "it must be greater than zero";
+    quantity(text, Dimension::Time, |time| time > 0.0, wanted, "0.5 s")
+}
+
 /// A length of zero or more in mm.
 pub fn gap(text: &str) -> Result<f64, Diagnostic> {
     within(text, |length| length >= 0.0, "it must not be negative")

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::area::Area;
-use super::machine::{self, ForceColumn, FrameForces};
+use super::machine::{self, ForceColumn, FrameClock, FrameForces};
 use super::specimen_file::SpecimenFile;
 use crate::error::{Diagnostic, Error, suggestion};
 use crate::estimation::{
@@ -40,6 +40,8 @@ pub struct Conditions {
     pub forces_are_checks: bool,
     /// Columns of a testing machine's table with forces.
     pub force_columns: Vec<ForceColumn>,
+    /// How the frames' times and those of that table belong together.
+    pub clock: FrameClock,
     /// Parameters of the law that are found with the field.
     pub fit: Vec<String>,
     /// How far inside of the specimen's edge the outermost markers lie, in mm; unknown where it is not given.
@@ -170,7 +172,8 @@ impl Conditions {
                 "name the testing machine's table with --forces FILE",
             )),
             (Some(path), _) => {
-                let (forces, warnings) = machine::forces(path, &self.force_columns, series)?;
+                let (forces, warnings) =
+                    machine::forces(path, &self.force_columns, (series, self.clock))?;
                 self.forces.extend(forces);
                 Ok(warnings)
             }

@@ -23,6 +23,23 @@ pub struct ForceColumn {
     pub standard_deviation: Option<f64>,
 }
 
+/// How the times of the frames and those of the testing machine belong together.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct FrameClock {
+    /// Time in s from one frame to the next where frames have no time: number n is taken at n times this.
+    pub interval: Option<f64>,
+    /// Time in s on the machine's clock when that of the frames is at zero.
+    pub offset: f64,
+}
+
+impl FrameClock {
+    /// When a frame was taken, on the machine's clock.
+    fn time(&self, frame: &Frame) -> Option<f64> {
+        let counted = self.interval.map(|interval| interval * frame.number as f64);
+        Some(self.offset + frame.time.or(counted)?)
+    }
+}
+
 /// Measured forces, each with its frame where that is said.
 pub type FrameForces = Vec<(Option<usize>, MeasuredForce)>;
 
@@ -41,7 +58,7 @@ enum Match {
 pub fn forces(
     path: &Path,
     wanted: &[ForceColumn],
-    series: &MarkerSeries,
+    (series, clock): (&MarkerSeries, FrameClock),
 ) -> Result<(FrameForces, Vec<Diagnostic>), Error> {
     let table = Table::read(path, Table::HINT)?;
     if wanted.is_empty() {
@@ -60,7 +77,7 @@ pub fn forces(
         let forces = newtons(&table, one)?;
         let stated = one.standard_deviation;
         for frame in &series.frames {
-            let Some(force) = rows.at(&table, frame, &forces)? else {
+            let Some(force) = rows.at(&table, (frame, clock.time(frame)), &forces)? else {
                 without.insert(frame.number);
                 continue;
             };
@@ -154,7 +171,12 @@ fn key(number: f64) -> u64 {
 
 impl Match {
     /// The force in a frame: that of its row, or between the rows before and after its time.
-    fn at(&self, table: &Table, frame: &Frame, forces: &[f64]) -> Result<Option<f64>, Error> {
+    fn at(
+        &self,
+        table: &Table,
+        (frame, time): (&Frame, Option<f64>),
+        forces: &[f64],
+    ) -> Result<Option<f64>, Error> {
         let times = match self {
             Self::Frames(rows) => {
                 let row = rows.get(&key(frame.number as f64));
@@ -162,12 +184,13 @@ impl Match {
             }
             Self::Times(times) => times,
         };
-        let Some(time) = frame.time else {
+        let Some(time) = time else {
             let message = format!(
                 "rows are matched by time, but frame {} has none",
                 frame.number
             );
-            let hint = "give the field a column `time [s]`, or this table a column `frame`";
+            let hint = "state the time from frame to frame, such as --frame-interval \"0.5 s\" (frame_interval), or give the field a column `time [s]` or this table \
+                        a column `frame`";
             return Err(table.refuse_columns(message, hint));
         };
         let after = times.partition_point(|known| *known < time);
@@ -177,12 +200,13 @@ impl Match {
         if after == 0 || after == times.len() {
             let row = after.min(times.len() - 1);
             let message = format!(
-                "frame {} was taken at {time} s, but the machine's times run from {} to {} s",
+                "frame {} was taken at {} s, but the machine's times run from {} to {} s",
                 frame.number,
+                (1e6 * time).round() / 1e6,
                 times[0],
                 times[times.len() - 1]
             );
-            let hint = "give both times on one clock: shift one of the columns";
+            let hint = "state the machine's time when that of the frames is at zero, such as --clock-offset \"1.2 s\" (clock_offset)";
             return Err(table.refuse(table.rows[row].1.clone(), message, hint));
         }
         let share = (time - times[after - 1]) / (times[after] - times[after - 1]);
@@ -211,6 +235,15 @@ mod tests {
     type Found = Result<(FrameForces, Vec<Diagnostic>), Error>;
 
     fn of(text: &str, column: &str, frames: &[(usize, Option<f64>)]) -> Found {
+        on_clock(text, column, frames, FrameClock::default())
+    }
+
+    fn on_clock(
+        text: &str,
+        column: &str,
+        frames: &[(usize, Option<f64>)],
+        clock: FrameClock,
+    ) -> Found {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("machine.csv");
         std::fs::write(&path, text).unwrap();
@@ -220,7 +253,7 @@ mod tests {
             column: column.into(),
             standard_deviation: None,
         };
-        forces(&path, &[column], &series(frames))
+        forces(&path, &[column], (&series(frames), clock))
     }
 
     const BY_TIME: &str = "time [ms];Weg [mm];Load [kN]\n0;0;0\n1000;1;0,002\n3000;2;0,006\n";
@@ -248,6 +281,17 @@ mod tests {
             "{values:?}"
         );
         assert!(warnings.is_empty());
+        let late = FrameClock {
+            interval: Some(0.5),
+            offset: 0.5,
+        };
+        let frames = [(2, None), (1, Some(0.25))];
+        let (forces, _) = on_clock(BY_TIME, "load", &frames, late).unwrap();
+        let values: Vec<f64> = forces.iter().map(|(_, one)| one.force).collect();
+        assert!(
+            (values[0] - 3.0).abs() < 1e-12 && (values[1] - 1.5).abs() < 1e-12,
+            "{values:?}"
+        );
     }
 
     #[test]

@@ -73,6 +73,13 @@ fn read(root: &Section, folder: &Path) -> Conditions {
         let half = Bound::Within(0.0, 0.5);
         conditions.scale_deviation = root.quantity("scale_error", Dimension::Ratio, half);
     }
+    if root.has("frame_interval") {
+        let interval = root.quantity("frame_interval", Dimension::Time, Bound::Positive);
+        conditions.clock.interval = Some(interval);
+    }
+    if root.has("clock_offset") {
+        conditions.clock.offset = root.quantity("clock_offset", Dimension::Time, Bound::Any);
+    }
     if root.has("robust") {
         conditions.robust = root.choice("robust", &Robust::NAMES);
     }
