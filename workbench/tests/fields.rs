@@ -148,8 +148,8 @@ fn warnings_name_what_the_view_offers() {
     assert!(bench.query_by_label_contains(&advice).is_some());
 }
 
-#[test]
-fn two_photographs_and_an_edge_lead_to_force_and_stress() {
+/// Two photographs, the edge and the length of a pixel.
+fn photographs(edge: Option<&[u8]>) -> Bench {
     let mut bench = window([1400.0, 1400.0], small());
     let first = include_bytes!("../../examples/gel_0.png");
     state_mut(&mut bench).open("gel_0.png", first);
@@ -159,8 +159,9 @@ fn two_photographs_and_an_edge_lead_to_force_and_stress() {
             .query_by_label_contains("drop an image under load")
             .is_some()
     );
-    let outline = include_bytes!("../../examples/gel_edge.csv");
-    state_mut(&mut bench).open("gel_edge.csv", outline);
+    if let Some(edge) = edge {
+        state_mut(&mut bench).open("gel_edge.csv", edge);
+    }
     let loaded = include_bytes!("../../examples/gel_1.png");
     state_mut(&mut bench).open("gel_1.png", loaded);
     until(&mut bench, |bench| bench.fields().answer().is_some());
@@ -176,6 +177,12 @@ fn two_photographs_and_an_edge_lead_to_force_and_stress() {
         .get_by_role_and_label(Role::TextInput, unit.label)
         .type_text("0.05 mm");
     bench.step();
+    bench
+}
+
+#[test]
+fn two_photographs_and_an_edge_lead_to_force_and_stress() {
+    let mut bench = photographs(Some(include_bytes!("../../examples/gel_edge.csv")));
     for edge in ["top", "bottom"] {
         let fields = state_mut(&mut bench).fields_mut();
         fields.state_edge(edge, Edge::Free);
@@ -202,4 +209,53 @@ fn two_photographs_and_an_edge_lead_to_force_and_stress() {
     assert!(right(deformed) < photo.corners[1][0]);
     assert!(bench.query_by_label_contains("the camera image").is_some());
     assert!(bench.query_by_label_contains("force on right").is_some());
+}
+
+#[test]
+fn the_edge_may_be_drawn_on_the_first_photograph() {
+    let mut bench = photographs(None);
+    bench.get_by_label("look").click();
+    until(&mut bench, looked);
+    bench.step();
+    bench.get_by_label("draw the edge").click();
+    bench.step();
+    bench.step();
+    let [left, right, bottom, top] = [1.0, 16.0, 1.95, 9.95];
+    let corners = [[left, top], [right, top], [right, bottom], [left, bottom]];
+    let view = state(&bench).fields().view().unwrap();
+    // One corner too many is taken back.
+    let clicks = corners[..3].iter().chain([&[18.0, 6.0]]);
+    for corner in clicks {
+        click(&mut bench, view.at(*corner));
+    }
+    bench.get_by_label("take back the last corner").click();
+    bench.step();
+    for corner in [corners[3], corners[0]] {
+        click(&mut bench, view.at(corner));
+    }
+    bench.get_by_label("use this edge").click();
+    bench.step();
+    until(&mut bench, |bench| !bench.fields().is_busy());
+    bench.step();
+    let answer = state(&bench).fields().answer().unwrap().as_ref().unwrap();
+    let Drawing::Mesh(figure) = &answer.preview.drawing else {
+        panic!("a mesh is drawn");
+    };
+    // To a point of the screen.
+    let point = view.vector(eframe::egui::vec2(1.0, 0.0))[0];
+    for (axis, sides) in [[left, right], [bottom, top]].into_iter().enumerate() {
+        let nodes = || figure.cells.iter().flatten().map(|node| node[axis]);
+        let [least, most] = [
+            nodes().fold(f64::MAX, f64::min),
+            nodes().fold(f64::MIN, f64::max),
+        ];
+        assert!((least - sides[0]).abs() < point && (most - sides[1]).abs() < point);
+    }
+    assert!(
+        ["left", "right", "bottom", "top"].iter().all(|name| answer
+            .preview
+            .edges
+            .iter()
+            .any(|edge| edge == name))
+    );
 }

@@ -28,7 +28,7 @@ mod photo;
 mod request;
 pub mod settings;
 
-pub use edges::{Edge, middle, nearest};
+pub use edges::{DRAWN, Edge, lines_of, middle, nearest};
 pub use photo::Photo;
 use photo::Photos;
 use request::{length, request};
@@ -227,6 +227,8 @@ pub fn files(question: &FieldQuestion) -> Result<Vec<NamedFile>, Error> {
         output::write(&results, true, &mut files)?;
         let known = edges::written(&question.edges, &question.edge_gap);
         files.push((KNOWN.to_owned(), known.into_bytes()));
+        let edge = question.edge_file.iter();
+        files.extend(edge.filter(|(name, _)| name == DRAWN).cloned());
         let again = format!("{}\n", question.command());
         files.push(("command.txt".to_owned(), again.into_bytes()));
         Ok(files)

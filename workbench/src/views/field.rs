@@ -15,15 +15,20 @@ use crate::logic::scene::CardFile;
 use crate::logic::studies::NamedFile;
 use crate::logic::table::Table;
 
+mod drawn_edge;
 mod edges;
 mod frames;
 mod photos;
 
+use drawn_edge::DrawnEdge;
 use edges::Asked;
 use photos::Photographs;
 
 /// The width from which what is said and what was found stand side by side.
 const WIDE: f32 = 900.0;
+
+/// How far from an edge or a corner a click may be, in points: as wide as a finger.
+const REACH: f32 = 14.0;
 
 /// The field that comes along, with noise, outliers and what is known of its edges.
 const EXAMPLE: &[u8] = include_bytes!("../../../examples/measured_plate.csv");
@@ -43,6 +48,8 @@ pub struct Fields {
     /// What was seen of the files last.
     seen: Option<Preview>,
     photographs: Photographs,
+    /// The edge that is being drawn.
+    drawn: Option<DrawnEdge>,
 }
 
 impl Fields {
@@ -60,6 +67,7 @@ impl Fields {
             view: None,
             seen: None,
             photographs: Photographs::default(),
+            drawn: None,
         }
     }
 
@@ -362,6 +370,11 @@ impl Fields {
             ui.colored_label(ui.visuals().warn_fg_color, warning);
         }
         ui.add_space(4.0);
+        if let Some(photo) = &preview.photo
+            && self.draws_edge(ui, photo)
+        {
+            return;
+        }
         ui.label(format!(
             "The mesh: {}. Click an edge and state what is known about it:",
             preview.mesh

@@ -103,6 +103,20 @@ pub fn written(edges: &BTreeMap<String, Edge>, edge_gap: &str) -> String {
     text
 }
 
+/// The name of an edge that was drawn in the window.
+pub const DRAWN: &str = "drawn_edge.csv";
+
+/// Closed lines of corners in mm as the table that `gelbench correct --outline` takes.
+pub fn lines_of(lines: &[Vec<[f64; 2]>]) -> Vec<u8> {
+    let mut text = String::from("x [mm],y [mm],line\n");
+    for (line, corners) in (1..).zip(lines) {
+        for [x, y] in corners {
+            text += &format!("{x:.6},{y:.6},{line}\n");
+        }
+    }
+    text.into_bytes()
+}
+
 /// The edge that is nearest to a place in mm, where one is within reach.
 pub fn nearest(figure: &MeshFigure, position: [f64; 2], reach: f64) -> Option<&str> {
     let distances = figure.groups.iter().flat_map(|group| {

@@ -8,14 +8,11 @@ use eframe::egui::{
 use gelbench::results::Drawing;
 use gelbench_report::results::MeshFigure;
 
-use super::Fields;
+use super::{Fields, REACH};
 use crate::logic::field::{Edge, Preview, middle, nearest};
 use crate::views::colours::range;
 use crate::views::report;
 use crate::views::surface::View;
-
-/// How far from an edge a click may be, in points: as wide as a finger.
-const REACH: f32 = 14.0;
 
 /// The edge that is asked about, and where on the screen.
 pub type Asked = Option<(String, Pos2)>;
