@@ -9,15 +9,22 @@ from typing import Any, NamedTuple
 __all__ = ["Fault", "InputError", "SolveError", "WriteError"]
 
 
-OPTION = re.compile(r"--([a-z][a-z-]*)(?:[ =](\"[^\"]*\"|[^\s,;)`]+))?")
+OPTION = re.compile(r"--([a-z][a-z-]*)(?:[ =]((?:\"[^\"]*\"|[^\s,;)`\"]|,(?=\S))+))?")
 PROSE = ("and", "as", "for", "if", "in", "is", "of", "or", "to", "where", "with")
+NAMES = {"poisson": "poisson_ratio", "young": "youngs_modulus", "study": "conditions"}
+"""Arguments with other names than the options."""
 
 
 def _argument(option: re.Match[str]) -> str:
     name, value = option[1].replace("-", "_"), option[2]
+    name = NAMES.get(name, name)
     if value is None or value in PROSE:
         return f"{name}=" + (f" {value}" if value else "")
-    return f"{name}={value}" if re.fullmatch(r'".*"|[-+.\de]+', value) else f'{name}="{value}"'
+    if name == "parameter":
+        return value
+    if re.fullmatch(r'"[^"]*"|[-+.\de]+', value):
+        return f"{name}={value}"
+    return f"{name}='{value}'" if '"' in value else f'{name}="{value}"'
 
 
 def in_python(text: str) -> str:

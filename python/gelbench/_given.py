@@ -32,6 +32,12 @@ def path_of(path: PathLike | None) -> str | None:
     return None if path is None else os.fspath(path)
 
 
+def _bare(mesh: Any) -> Any:
+    """A mesh of meshio with its groups and without its fields, which Gmsh's files may not take."""
+    groups = {name: blocks for name, blocks in mesh.cell_data.items() if name.startswith("gmsh:")}
+    return type(mesh)(mesh.points, mesh.cells, cell_data=groups, field_data=mesh.field_data, point_sets=mesh.point_sets, cell_sets=mesh.cell_sets)
+
+
 def _is_path(given: Any) -> bool:
     return given is None or isinstance(given, (str, os.PathLike))
 
@@ -75,7 +81,7 @@ class GivenFiles:
         with tempfile.TemporaryDirectory() as folder:
             if hasattr(mesh, "cells") and hasattr(mesh, "point_sets"):
                 file = Path(folder) / "mesh.msh"
-                mesh.write(file, file_format="gmsh")
+                _bare(mesh).write(file, file_format="gmsh22", binary=False)
             elif hasattr(mesh, "cells_dict") and hasattr(mesh, "save"):
                 file = Path(folder) / "mesh.vtu"
                 mesh.save(file)

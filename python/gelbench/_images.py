@@ -98,7 +98,7 @@ def images_of(images: Any) -> tuple[list[str], list[Any]]:
     files = paths_of(images)
     if files is not None:
         return files, []
-    frames = list(images)
+    frames = list(images) if np.iterable(images) else []
     if not frames:
         raise fault("images", "holds no image", "give at least two, the first one of the specimen at rest")
     return [], [_grey(frame, f"images[{number}]") for number, frame in enumerate(frames)]

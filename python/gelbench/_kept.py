@@ -5,6 +5,8 @@ from __future__ import annotations
 import copyreg
 import json
 import os
+import zipfile
+import zlib
 from collections.abc import Iterable
 from functools import partial
 from pathlib import Path
@@ -27,6 +29,7 @@ class Kept:
 
     def __init__(self, values: dict[str, Any]) -> None:
         self._values = values
+        _protect(values)
 
     def __getattr__(self, name: str) -> Any:
         if name.startswith("__") or name == "_values":
@@ -58,6 +61,17 @@ class Kept:
 
     def __reduce__(self) -> tuple[Any, ...]:
         return Kept, (self._values,)
+
+
+def _protect(value: Any) -> None:
+    """Arrays are read-only, as those of the library are."""
+    if isinstance(value, np.ndarray):
+        value.setflags(write=False)
+    elif isinstance(value, dict):
+        _protect(list(value.values()))
+    elif isinstance(value, (list, tuple)):
+        for one in value:
+            _protect(one)
 
 
 def _answers(core: Any, attributes: Iterable[str], calls: Iterable[tuple[str, tuple[int, ...]]]) -> dict[str, Any]:
@@ -125,14 +139,13 @@ def load_values(path: PathLike) -> dict[str, Any]:
         with np.load(path, allow_pickle=False) as file:
             found: dict[str, Any] = _with_arrays(json.loads(file["text"].tobytes()), file)
             return found
-    except (OSError, ValueError, KeyError, TypeError) as cause:
+    except (OSError, EOFError, ValueError, LookupError, TypeError, AttributeError, zipfile.BadZipFile, zlib.error) as cause:
         raise fault("path", f"{path} cannot be read: {cause}", "name a file that save has written") from None
 
 
 def _with_arrays(value: Any, file: Any) -> Any:
     if isinstance(value, dict) and list(value) == [ARRAY]:
         array = file[f"arr_{value[ARRAY]}"]
-        array.setflags(write=False)
         return array.tobytes() if array.dtype == np.uint8 else array
     if isinstance(value, dict):
         return {key: _with_arrays(one, file) for key, one in value.items()}

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from ._errors import fault
 from ._images import Tracked
 from ._kept import Kept, load_values
 from ._markers import Correction
@@ -23,6 +24,8 @@ def load(path: PathLike) -> Any:
         If the file cannot be read.
     """
     found = load_values(path)
+    if not isinstance(found, dict) or not found.keys() >= {"type", "values"}:
+        raise fault("path", f"{path} holds no results of gelbench", "name a file that save has written")
     core: Any = Kept(found["values"])
     kind = found["type"]
     if kind == "Solution":

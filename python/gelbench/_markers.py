@@ -17,7 +17,7 @@ from ._images import Images, image_options, images_of
 from ._material import Material, card
 from ._material import material as _material
 from ._progress import Progress, callback
-from ._quantities import PathLike, Quantity, number, text, toml
+from ._quantities import PathLike, Quantity, positive, text, toml
 from ._results import Field, Results
 from ._tests import Data, Estimate
 
@@ -114,8 +114,8 @@ def correct(
     unit: Quantity | None = None,
     array: str | None = None,
     grid: Quantity | None = None,
-    columns: Mapping[str, str] | None = None,
-    ignore_columns: Sequence[str] = (),
+    columns: Mapping[str, str] | str | None = None,
+    ignore_columns: str | Sequence[str] = (),
     encoding: str | None = None,
     y_axis: str | None = None,
     places: str | None = None,
@@ -224,7 +224,7 @@ def correct(
         "clock_offset": clock_offset if clock_offset is None else text(clock_offset, "s", "clock_offset"),
         "robust": robust,
         "physics": physics,
-        "fit": ([fit] if isinstance(fit, str) else list(fit)) or None,
+        "fit": _names(fit) or None,
         "sheet": sheet,
     }
     listed = _edges(free, rigid, known or {})
@@ -244,29 +244,27 @@ def correct(
     options: dict[str, Any] = {
         "unit": unit if unit is None else text(unit, "mm", "unit"),
         "array": array,
-        "grid": None if grid is None else number(grid, "mm", "grid"),
-        "ignore_columns": list(ignore_columns),
-        "columns": [f"{role}={column}" for role, column in (columns or {}).items()],
+        "grid": positive(grid, "mm", "grid"),
+        "ignore_columns": _names(ignore_columns),
+        "columns": columns.split(",") if isinstance(columns, str) else [f"{role}={column}" for role, column in (columns or {}).items()],
         "encoding": encoding,
         "y_axis": y_axis,
         "places": places,
         "rest": path_of(rest),
         "mesh": in_memory.mesh(mesh),
         "mesh_unit": mesh_unit,
-        "merge_nodes": None if merge_nodes is None else number(merge_nodes, "mm", "merge_nodes"),
-        "allow": list(allow),
+        "merge_nodes": positive(merge_nodes, "mm", "merge_nodes"),
+        "allow": _names(allow),
         "outline": in_memory.outline(outline),
         "forces": in_memory.optional_table(forces, "forces"),
-        "cell_size": None if cell_size is None else number(cell_size, "mm", "cell_size"),
+        "cell_size": positive(cell_size, "mm", "cell_size"),
         "refine": refine,
         "cells": cells,
         "holes": holes,
         "regions": [(name, card(_material(one))) for name, one in (regions or {}).items()],
         "allow_large": allow_large,
     }
-    size = number(thickness, "mm", "thickness")
-    if not 0.0 < size < np.inf:
-        raise fault("thickness", f"is {thickness!r}", "it must be positive")
+    size = positive(thickness, "mm", "thickness") or 0.0
     files, frames = ([], []) if images is None else images_of(images)
     if images is None:
         files = paths_of(markers) or [_table_of(markers, in_memory)]
@@ -274,6 +272,11 @@ def correct(
     options["in_memory"] = in_memory.files
     name = Path(conditions or (files[0] if files else "images")).stem
     return Correction(*_core.correct(name, files, card(own), size, what, options, callback(progress)))
+
+
+def _names(given: str | Sequence[str]) -> list[str]:
+    """One name or several."""
+    return [given] if isinstance(given, str) else list(given)
 
 
 def _table_of(markers: Any, in_memory: GivenFiles) -> str:

@@ -57,7 +57,8 @@ def laws() -> dict[str, str]:
 def viscosity_sections(viscosity: Mapping[str, Any] | None, name: str) -> dict[str, Any]:
     """The sections of a viscosity; plain numbers are MPa·s and s."""
     viscous = texts(viscosity or {}, {"shear": "MPa*s"}, "viscosity")
-    terms = [texts(term, {"time": "s"}, "viscosity.relaxation") for term in viscous.pop("relaxation", [])]
+    relaxation = viscous.pop("relaxation", [])
+    terms = [texts(term, {"time": "s"}, "viscosity.relaxation") for term in ([relaxation] if isinstance(relaxation, Mapping) else relaxation)]
     return {name: viscous} | ({f"{name}.relaxation": terms} if terms else {})
 
 
@@ -74,7 +75,7 @@ class Material:
     name : str, optional
         Name of the material; that of the law if omitted.
     **values : quantity
-        Parameters of the law [MPa, –], or ``youngs_modulus``, ``shear_modulus``, ``bulk_modulus`` [MPa] and ``poisson_ratio`` instead of
+        Parameters of the law [MPa, rad, –], or ``youngs_modulus``, ``shear_modulus``, ``bulk_modulus`` [MPa] and ``poisson_ratio`` instead of
         one; ``density``, such as ``"1020 kg/m^3"``; ``convention`` of Ogden's law.
 
     Raises
@@ -275,7 +276,7 @@ class Material:
 
     @property
     def stretch_range(self) -> tuple[float, float]:
-        """The range of stretches of its calibration."""
+        """The range of stretches of its calibration; (0.5, 3) of a material that was not calibrated."""
         return self._card.stretch_range
 
     @property

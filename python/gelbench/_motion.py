@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+import numpy as np
+
 from . import _core
 from ._errors import fault
-from ._material import in_memory, viscosity_sections
+from ._material import Material, in_memory, viscosity_sections
 from ._plate import Plate
 from ._progress import Progress, callback
-from ._quantities import Quantity, text, texts, toml
+from ._quantities import Quantity, number, text, texts, toml
 from ._results import Results
 from ._specimen import Specimen
 from ._study import Files, Settings, merged
@@ -103,16 +106,20 @@ class Motion:
             raise fault("sheet", f"is {sheet!r}", "give a Plate or a Specimen")
         if sheet._mesh is not None:
             raise fault("sheet", "its mesh is on no disk", "save the mesh, and name its file in a study for gelbench.run")
-        self.sheet = sheet
-        self.material = sheet.material
+        if not isinstance(drive, Mapping):
+            raise fault("drive", f"is {drive!r}", 'give a mapping, such as {"motion": "release"}')
+        self._sheet = copy.deepcopy(sheet)
+        self._material = sheet.material
         length = text(duration, "s", "duration")
         own: dict[str, Any] = {
             "kind": "motion",
             "material": {} if density is None else {"density": text(density, "kg/m^3", "density")},
             "time": {"duration": length, "interval": _hundredth(length) if interval is None else text(interval, "s", "interval")},
-            "probe": [{"name": name, "at": [text(one, "mm", "probes") for one in at]} for name, at in (probes or {}).items()],
+            "probe": [{"name": name, "at": [text(one, "mm", "probes") for one in at]} for name, at in _of_names(probes)],
         }
         if gravity is not None:
+            if isinstance(gravity, str) or np.ndim(np.asarray(gravity, dtype=object)) != 1 or len(gravity) != 2:
+                raise fault("gravity", f"is {gravity!r}", 'give its components along x and y, such as (0, "-9.81 m/s^2")')
             x, y = gravity
             own["gravity"] = {"x": text(x, "mm/s^2", "gravity"), "y": text(y, "mm/s^2", "gravity")}
         own |= _of_sheet(sheet, text(start, "", "start"), texts({**DEFAULTS.get(drive.get("motion"), {}), **drive}, UNITS, "drive"))
@@ -120,6 +127,21 @@ class Motion:
         self._sections = merged(own, settings, ARGUMENTS)
         study, files = self._here()
         _core.check("motion", False, study, files)
+
+    @property
+    def sheet(self) -> Plate | Specimen:
+        """The sheet; another one needs another Motion."""
+        return copy.deepcopy(self._sheet)
+
+    @property
+    def material(self) -> Material:
+        """The material of the sheet."""
+        return self._material
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if not name.startswith("_"):
+            raise AttributeError(f"{name} of a Motion cannot be assigned; create another Motion with it")
+        super().__setattr__(name, value)
 
     def _here(self) -> tuple[str, Files]:
         name, files = in_memory(self.material)
@@ -153,7 +175,7 @@ class Motion:
         return Results(_core.run("motion", callback(progress), allow_large, study, files))
 
     def __repr__(self) -> str:
-        return f"<gelbench.Motion of {self._sections['time']['duration']}: {self.sheet!r}>"
+        return f"<gelbench.Motion of {self._sections['time']['duration']}: {self._sheet!r}>"
 
 
 def _of_sheet(sheet: Plate | Specimen, start: str, drive: dict[str, Any]) -> dict[str, Any]:
@@ -166,9 +188,11 @@ def _of_sheet(sheet: Plate | Specimen, start: str, drive: dict[str, Any]) -> dic
     return {**kept, **conditions, "start": {"factor": start}, "path": path}
 
 
+def _of_names(probes: Mapping[str, Sequence[Quantity]] | None) -> list[tuple[str, Sequence[Quantity]]]:
+    if not isinstance(probes or {}, Mapping):
+        raise fault("probes", f"is {probes!r}", 'give points by name, such as {"middle": (75, 25)}')
+    return list((probes or {}).items())
+
+
 def _hundredth(duration: str) -> str:
-    number, _, unit = duration.partition(" ")
-    try:
-        return f"{float(number) / 100!r} {unit}"
-    except ValueError:
-        raise fault("interval", "is missing", 'give it, such as "1 ms"') from None
+    return f"{number(duration, 's', 'duration') / 100!r} s"

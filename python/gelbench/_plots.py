@@ -63,12 +63,16 @@ def triangles(cells: Cells) -> Any:
     return np.concatenate(parts)
 
 
-def label(name: str) -> str:
+AXES = {2: ["x", "y"], 4: ["11", "22", "33", "12"], 5: ["11", "21", "12", "22", "33"]}
+"""Names of the components of vectors and tensors, by their number."""
+
+
+def label(name: str, component: str = "") -> str:
     """The label from an array's name: ``von_mises_stress_at_nodes_MPa`` → ``von mises stress [MPa]``."""
     words = name.replace("_at_nodes", "").split("_")
     known = {"MPa", "mm", "N"}
     unit = f" [{words.pop()}]" if words[-1] in known else ""
-    text = " ".join(words) + unit
+    text = " ".join([*words, component]).rstrip() + unit
     return text.replace("von mises", "von Mises").replace("cauchy", "Cauchy").replace("green lagrange", "Green–Lagrange")
 
 
@@ -86,7 +90,7 @@ def _limits(places: Floats, values: Floats) -> tuple[float, float, str]:
     return low, high, {(True, True): "both", (True, False): "min", (False, True): "max"}.get(beyond, "neither")
 
 
-def deformed(state: State, quantity: str, ax: Axes | None, options: dict[str, Any]) -> Axes:
+def deformed(state: State, quantity: str, component: int, ax: Axes | None, options: dict[str, Any]) -> Axes:
     """The deformed sheet, coloured by an array at its nodes."""
     from ._errors import fault
 
@@ -95,7 +99,11 @@ def deformed(state: State, quantity: str, ax: Axes | None, options: dict[str, An
         raise fault("quantity", f"there is no array `{quantity}`", f"arrays are {', '.join(data)}")
     own: Any = axes(ax)
     values = data[quantity]
-    values = values if values.ndim == 1 else values[:, 0]
+    count = 1 if values.ndim == 1 else values.shape[1]
+    if not 0 <= component < count:
+        raise fault("component", f"is {component}, and {quantity} has {count}", f"give one from 0 to {count - 1}")
+    values = values if values.ndim == 1 else values[:, component]
+    words = label(quantity, "" if count == 1 else AXES.get(count, [str(one) for one in range(count)])[component])
     place = state.solution.points + state.displacement
     corners = triangles(state.solution.cells)
     low, high, extend = _limits(place[corners], values[corners])
@@ -106,7 +114,7 @@ def deformed(state: State, quantity: str, ax: Axes | None, options: dict[str, An
     own.set_ylabel("y [mm]")
     own.set_title(f"{state.solution.model}, load factor {state.factor:g}")
     extend = "neither" if {"vmin", "vmax", "norm"} & options.keys() else extend
-    own.figure.colorbar(drawn, ax=own, label=label(quantity), shrink=0.8, extend=extend)
+    own.figure.colorbar(drawn, ax=own, label=words, shrink=0.8, extend=extend)
     found: Axes = own
     return found
 
@@ -143,7 +151,7 @@ def material_curves(material: Material, ax: Axes | None, tests: tuple[str, ...],
     at: Floats = np.linspace(low, high, 101) if stretch is None else np.asarray(stretch, dtype=np.float64)
     for test in tests:
         own.plot(at, material.stress(at, test), label=test)
-    own.set_xlabel("stretch λ")
+    own.set_xlabel("stretch λ; 1 + γ of shear" if "shear" in tests else "stretch λ")
     own.set_ylabel("nominal stress [MPa]")
     own.set_title(material.title)
     own.grid(alpha=0.3)

@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _core
-from ._errors import fault
+from ._errors import InputError, fault
 
-__all__ = ["Floats", "PathLike", "Quantity", "SupportsUnits", "as_stated", "finite", "floats", "magnitudes", "number", "text", "texts", "toml", "pint_unit", "whole"]
+__all__ = ["Floats", "PathLike", "Quantity", "SupportsUnits", "as_stated", "finite", "floats", "magnitudes", "number", "positive", "text", "texts", "toml", "pint_unit", "whole"]
 
 Floats: TypeAlias = NDArray[np.float64]
 PathLike: TypeAlias = "str | os.PathLike[str]"
@@ -45,6 +45,8 @@ def as_stated(value: SupportsUnits) -> str:
 
 def texts(values: Mapping[str, Any], units: Mapping[str, str], argument: str) -> dict[str, Any]:
     """The values of keys as in a study's text: those of keys with a unit, alone or in lists, as quantities."""
+    if not isinstance(values, Mapping):
+        raise fault(argument, f"is {values!r}", 'give its keys and values, such as {"key": value}')
 
     def of(key: str, value: Any) -> Any:
         if key not in units:
@@ -65,7 +67,9 @@ def text(value: Any, unit: str, argument: str) -> str:
     if isinstance(value, SupportsUnits):
         value = converted(value, unit, argument)
     try:
-        plain = float(value)
+        plain = float("nan" if isinstance(value, (bool, np.bool_)) else value)
+        if np.isnan(plain):
+            raise ValueError(value)
     except (TypeError, ValueError):
         hint = f'a number in {unit or "1"}, or a text with a unit'
         raise fault(argument, f"{value!r} is not a quantity", hint) from None
@@ -74,7 +78,20 @@ def text(value: Any, unit: str, argument: str) -> str:
 
 def number(value: Any, unit: str, argument: str) -> float:
     """A quantity as a number in `unit`."""
-    return _core.quantity(text(value, unit, argument), unit)
+    try:
+        return _core.quantity(text(value, unit, argument), unit)
+    except InputError as wrong:
+        raise fault(argument, str(wrong), f'give a number in {unit or "1"}, or a text with a unit') from None
+
+
+def positive(value: Any, unit: str, argument: str) -> float | None:
+    """A quantity greater than zero as a number in `unit`; None remains."""
+    if value is None:
+        return None
+    found = number(value, unit, argument)
+    if not 0.0 < found < np.inf:
+        raise fault(argument, f"is {value!r}", "it must be greater than zero")
+    return found
 
 
 def converted(value: SupportsUnits, unit: str, argument: str) -> Any:

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
+from ._errors import WriteError, fault
 from ._kept import save_values, values_of
 from ._fields import Cells, cells_of, to_meshio, to_pyvista
 from ._quantities import Floats, PathLike, array_of, finite, floats
@@ -164,14 +165,16 @@ class State:
         return to_meshio(solution.points, solution.cells, self.point_data, self.cell_data)
 
     def plot(
-        self, quantity: str = "von_mises_stress_at_nodes_MPa", ax: Axes | None = None, **options: Any
+        self, quantity: str = "von_mises_stress_at_nodes_MPa", ax: Axes | None = None, *, component: int = 0, **options: Any
     ) -> Axes:
         """Draws the deformed sheet.
 
         Parameters
         ----------
         quantity : str
-            An array of `point_data`; for vectors and tensors the first component is drawn.
+            An array of `point_data`.
+        component : int
+            Of vectors and tensors the number of the component that is drawn.
         ax : matplotlib.axes.Axes, optional
             Where to draw.
         **options
@@ -183,7 +186,7 @@ class State:
         """
         from ._plots import deformed
 
-        return deformed(self, quantity, ax, options)
+        return deformed(self, quantity, component, ax, options)
 
     def _data(self) -> tuple[dict[str, Floats], dict[str, Floats]]:
         if self._arrays is None:
@@ -226,9 +229,17 @@ class Solution(Sequence[State]):
         ------
         gelbench.WriteError
             If the file cannot be written.
+        gelbench.InputError
+            If the file has another name.
         """
-        if os.fspath(path).endswith(".vtu"):
-            self.to_meshio().write(path)
+        kind = os.path.splitext(os.fspath(path))[1].lower()
+        if kind not in ("", ".npz", ".vtu"):
+            raise fault("path", f"{os.fspath(path)!r} is a file of another kind", "name it .npz, or .vtu for ParaView; to_meshio() writes others")
+        if kind == ".vtu":
+            try:
+                self.to_meshio().write(path, file_format="vtu")
+            except OSError as cause:
+                raise WriteError(f"{path} cannot be written: {cause}") from cause
             return
         errors = [[state.factor, state._errors] for state in self]
         save_values(path, {"type": "Solution", "model": self._model, "errors": errors, "values": values_of(self._core)})

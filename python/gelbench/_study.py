@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -53,7 +54,14 @@ class StudyInMemory:
         if name not in own:
             raise AttributeError(f"a {type(self).__name__} has no attribute {name}; it has {', '.join(['material', *own])}")
         value = own[name]
+        if isinstance(value, list):
+            return tuple(value)
         return number(value, _unit(name), name) if isinstance(value, str) and name not in TEXTS else value
+
+    def __copy__(self) -> StudyInMemory:
+        made = type(self).__new__(type(self))
+        made.__dict__.update(self.__dict__, _sections=copy.deepcopy(self._sections))
+        return made
 
     def __setattr__(self, name: str, value: Any) -> None:
         if name == "material":
@@ -62,6 +70,8 @@ class StudyInMemory:
             own = self._dimensions()
             if not isinstance(own.get(name), str) or name in TEXTS:
                 kind = type(self).__name__
+                if name not in own:
+                    raise AttributeError(f"a {kind} has no attribute {name}; it has {', '.join(['material', *own])}")
                 raise AttributeError(f"{name} of a {kind} cannot be assigned; create another {kind} with it")
             before, own[name] = own[name], text(value, _unit(name), name)
             try:
@@ -167,6 +177,8 @@ class StudyInMemory:
             raise fault("study", "its mesh is on no disk", "save the mesh, and give a study that names the file")
 
     def _one(self, study: str, files: Files, model: str, progress: Any, allow_large: bool) -> _core.Solution:
+        if not isinstance(model, str):
+            raise fault("model", f"is {model!r}", 'give "corrected", "mass-spring" or "finite-element"')
         return _core.solve_sheet(study, core_card(self.material), files, model, self._mesh, progress, allow_large)
 
     def _all(self, study: str, files: Files, progress: Any, allow_large: bool) -> _core.Results:
@@ -188,7 +200,7 @@ class StudyInMemory:
         model : {"corrected", "mass-spring", "finite-element"}
             The model. Finite elements are those of the finest mesh of the study.
         factors : array_like, optional
-            Load factors, ascending; of a plate the displacement of the grip over the length: 0.5, or ``"50 %"``, is a stretch to
+            Load factors, from small to large (of a compressed plate from -0.05 to -0.1); of a plate the displacement of the grip over the length: 0.5, or ``"50 %"``, is a stretch to
             150 %.
         reference : bool
             Whether to solve all models, so that `State.error` is known.
@@ -285,6 +297,8 @@ def merged(
 ) -> dict[str, Any]:
     """Sections with further keys; those that `arguments` say are refused with what is told there."""
     found = {name: dict(own) if isinstance(own, Mapping) else own for name, own in sections.items()}
+    if not isinstance(settings or {}, Mapping):
+        raise fault("settings", f"is {settings!r}", 'give keys by section, such as {"corrector": {"scheme": "gauss"}}')
     for name, own in (settings or {}).items():
         keys = [name, *(f"{name}.{key}" for key in own)] if isinstance(own, Mapping) else [name]
         for key in keys:
@@ -292,6 +306,14 @@ def merged(
                 raise fault(f"settings.{key}", "is set by an argument", (arguments or {})[key])
         found[name] = {**found.get(name, {}), **own} if isinstance(own, Mapping) else own
     return found
+
+
+def path_of(path: PathLike) -> str:
+    """The path of a study."""
+    try:
+        return os.fspath(path)
+    except TypeError:
+        raise fault("path", f"is {path!r}", "give the path of a study; a Plate or a Specimen has its own run") from None
 
 
 def run(path: PathLike, *, progress: Progress | None = None, allow_large: bool = False) -> Results:
@@ -318,7 +340,7 @@ def run(path: PathLike, *, progress: Progress | None = None, allow_large: bool =
     gelbench.SolveError
         If no model has any solution.
     """
-    return Results(_core.run(os.fspath(path), callback(progress), allow_large))
+    return Results(_core.run(path_of(path), callback(progress), allow_large))
 
 
 def check(path: PathLike, *, allow_large: bool = False) -> tuple[str, list[str]]:
@@ -336,4 +358,4 @@ def check(path: PathLike, *, allow_large: bool = False) -> tuple[str, list[str]]
     gelbench.InputError
         With every fault of the study.
     """
-    return _core.check(os.fspath(path), allow_large)
+    return _core.check(path_of(path), allow_large)

@@ -60,7 +60,7 @@ def _column(head: str, column: Any) -> tuple[str, Any]:
 
 def _of_array(data: Any, columns: Sequence[str]) -> dict[str, Any]:
     """The columns of an array; its unit, if any, applies to all of them."""
-    units = {column.rpartition("[")[2].rstrip("]") for column in columns}
+    units = {column.partition("[")[2].rstrip("]") for column in columns}
     if isinstance(data, SupportsUnits) and len(units) > 1:
         raise fault("data", "is one array with one unit", f"give a mapping of columns, such as {columns[0]} and {columns[1]}")
     array = floats(data, "data", (None, len(columns)), units.pop(), missing=True)
@@ -190,7 +190,7 @@ def fit(
     starts: int = 8,
     relaxation: bool | int = False,
     softening: bool = False,
-    columns: tuple[str, str] | str = ("stretch [-]", "stress [MPa]"),
+    columns: tuple[str, str] | str | None = None,
     progress: Progress | None = None,
     **reading: Quantity | Sequence[Quantity],
 ) -> Fit:
@@ -230,7 +230,7 @@ def fit(
         Also fits softening by the largest previous load (Mullins effect), to loading and unloading. The law is that of the
         first loading.
     columns : tuple of str, or str
-        Heads of an array's columns; or, of a table in which several columns may be meant, those to read, such as
+        Heads of an array's columns, deformation and stress by what is said of them if omitted; or, of a table in which several columns may be meant, those to read, such as
         ``"strain=Extension,stress=Load 2"``.
     progress : callable or tqdm bar, optional
         Receives progress messages.
@@ -249,7 +249,7 @@ def fit(
     gelbench.InputError
         With all faults of the data; nothing is guessed.
     """
-    several = isinstance(data, (list, tuple)) and len(data) > 0 and not np.isscalar(data[0]) and _are_tests(data)
+    several = isinstance(data, (list, tuple)) and len(data) > 0 and _are_tests(data)
     all_data = list(data) if several else [data]
     given: dict[str, Any] = {
         "test": test,
@@ -259,7 +259,7 @@ def fit(
         "strain unit": strain_unit,
     }
     given |= {key.replace("_", " "): value for key, value in reading.items()}
-    heads = ("stretch [-]", "stress [MPa]") if isinstance(columns, str) else columns
+    heads = _heads(strain, strain_unit, stress_unit) if columns is None or isinstance(columns, str) else columns
     if isinstance(columns, str):
         given["columns"] = columns
     said, of_each = _statements(given, len(all_data))
@@ -270,6 +270,13 @@ def fit(
     limits += [(key, [_limit(value, f"fixed.{key}")] * 2) for key, value in (fixed or {}).items()]
     least = whole(starts, "starts", 1)
     return Fit(_core.fit(tables, law, name, said, weighting, limits, least, history, callback(progress)))
+
+
+def _heads(strain: Any, strain_unit: Any, stress_unit: Any) -> tuple[str, str]:
+    """Heads of an array's two columns, by what is said of them."""
+    measures = {strain} if strain is None or isinstance(strain, str) else set(strain)
+    deformation = "stretch" if measures <= {None, "stretch"} else "strain"
+    return deformation + (" [-]" if strain_unit is None else ""), "stress" + (" [MPa]" if stress_unit is None else "")
 
 
 def biaxial(
@@ -313,6 +320,8 @@ def biaxial(
     >>> gb.biaxial("square.csv", "fung", mounting="rakes", tines=5, tine_spacing=1.5, tine_inset=1, tine_diameter=0.25,
     ...            length=8, width=8, thickness=0.8, rest_state="estimated")
     """
+    if not isinstance(rest_state, str) and np.shape(rest_state) != (2,):
+        raise fault("rest_state", f"is {rest_state!r}", 'give "as-mounted", "estimated", or the stretches along both axes as mounted')
     stretches = rest_state if isinstance(rest_state, str) else ",".join(str(float(one)) for one in rest_state)
     said: dict[str, Any] = {"test": "biaxial", "mounting": mounting, "markers": markers, "rest_state": stretches, "force_zero": force_zero}
     return fit(data, law, **{key: value for key, value in said.items() if value is not None}, **more)

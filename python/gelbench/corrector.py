@@ -250,7 +250,7 @@ class Corrected(NamedTuple):
 
 def correct(
     field: ArrayLike,
-    conditions: Sequence[Condition],
+    conditions: Condition | Sequence[Condition],
     *,
     start: ArrayLike | None = None,
     weights: ArrayLike | None = None,
@@ -306,6 +306,8 @@ def correct(
     gelbench.SolveError
         If no field is found, or conditions are linearly dependent: the rows are named.
     """
+    if isinstance(conditions, Condition):
+        conditions = [conditions]
     given = finite(floats(field, "field", (None,)), "field")
     begin = given if start is None else finite(floats(start, "start", (given.size,)), "start")
     own = np.ones(given.size) if weights is None else finite(floats(weights, "weights", (given.size,)), "weights")

@@ -15,11 +15,11 @@ fn converted(py: Python<'_>, error: &Error) -> PyResult<PyErr> {
     let raised = match error {
         Error::Input(faults) => {
             let class = module.getattr("Fault")?;
-            let faults = faults.iter().map(|fault| described(&class, fault));
-            let faults = faults.collect::<PyResult<Vec<_>>>()?;
+            let described = faults.iter().map(|fault| described(&class, fault));
+            let described = described.collect::<PyResult<Vec<_>>>()?;
             module
                 .getattr("InputError")?
-                .call1((error.to_string(), faults))?
+                .call1((without_warnings(faults).to_string(), described))?
         }
         Error::Solve { model, step, fault } => {
             let keywords = PyDict::new(py);
@@ -34,6 +34,18 @@ fn converted(py: Python<'_>, error: &Error) -> PyResult<PyErr> {
         Error::Write { .. } => module.getattr("WriteError")?.call1((error.to_string(),))?,
     };
     Ok(PyErr::from_value(raised))
+}
+
+/// The faults that must be mended; warnings are among the attributes of the exception.
+fn without_warnings(faults: &[Diagnostic]) -> Error {
+    let errors = faults.iter();
+    let errors = errors.filter(|fault| fault.severity == Severity::Error);
+    let errors: Vec<Diagnostic> = errors.cloned().collect();
+    Error::Input(if errors.is_empty() {
+        faults.to_vec()
+    } else {
+        errors
+    })
 }
 
 fn described<'py>(class: &Bound<'py, PyAny>, fault: &Diagnostic) -> PyResult<Bound<'py, PyAny>> {

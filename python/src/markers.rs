@@ -120,7 +120,13 @@ impl Options {
 pub fn length_unit(text: &str) -> Result<f64, Error> {
     let named = units::factor(text, Dimension::Length);
     let factor = named.or_else(|_| units::parse(text, Dimension::Length));
-    factor.map_err(|fault| refused(fault.to_string()))
+    let factor = factor.map_err(|fault| refused(format!("unit: \"{text}\" {fault}")))?;
+    if factor > 0.0 {
+        return Ok(factor);
+    }
+    Err(refused(format!(
+        "unit: \"{text}\" is not greater than zero"
+    )))
 }
 
 /// Whether a choice is the first of two.

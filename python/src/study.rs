@@ -262,13 +262,15 @@ pub fn run(
     })
 }
 
-/// A text with a unit as a number in `unit`: mm, N, MPa or ratios without one.
+/// A text with a unit as a number in `unit`: mm, N, MPa, s, rad, or a ratio without one.
 #[pyfunction]
 pub fn quantity(py: Python<'_>, text: &str, unit: &str) -> PyResult<f64> {
     let known = [
         ("mm", Dimension::Length),
         ("N", Dimension::Force),
         ("MPa", Dimension::Stress),
+        ("s", Dimension::Time),
+        ("rad", Dimension::Angle),
     ];
     let dimension = known.iter().find(|(name, _)| *name == unit);
     let dimension = dimension.map_or(Dimension::Ratio, |(_, dimension)| *dimension);

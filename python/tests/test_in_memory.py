@@ -266,3 +266,63 @@ def test_messages_name_arguments_where_the_command_names_options():
     assert all("--" not in f"{fault} {fault.hint}" for fault in caught.value.faults)
     with pytest.raises(gb.InputError, match='give test="uniaxial"'):
         gb.fit({"stretch": stretch, "nominal stress [MPa]": stretch}, "yeoh")
+
+
+def test_a_copy_is_a_sheet_of_its_own():
+    plate = gb.Plate(material="neo-hooke", **{**SMALL, "thickness": 1})
+    other = copy.copy(plate)
+    other.thickness = 3
+    assert (plate.thickness, other.thickness) == (1, 3) and isinstance(plate.cells, tuple)
+    with pytest.raises(AttributeError, match="no attribute thicknes"):
+        plate.thicknes = 3
+    ring = gb.Specimen(
+        "ring-sector", inner_radius=10, outer_radius=20, angle="90 deg", thickness=1, material="neo-hooke", cells=4,
+        supports={"start": "clamp", "end": {"x": 1, "y": 0}}, measured="end",
+    )  # fmt: skip
+    assert ring.angle == pytest.approx(np.pi / 2)
+    ring.angle = 1.5
+    assert ring.angle == 1.5
+
+
+def test_pickled_arrays_are_read_only_and_files_are_named_by_their_kind(tmp_path):
+    solution = gb.Plate(material="neo-hooke", **SMALL).solve(factors=0.1)
+    with pytest.raises(ValueError, match="read-only"):
+        pickle.loads(pickle.dumps(solution)).displacement[:] = 0
+    for name in ("s.vtk", "s.csv"):
+        with pytest.raises(gb.InputError, match="another kind"):
+            solution.save(tmp_path / name)
+    with pytest.raises(gb.WriteError):
+        solution.save(tmp_path / "none" / "s.npz")
+    solution.save(tmp_path / "s.npz")
+    whole = (tmp_path / "s.npz").read_bytes()
+    np.savez(tmp_path / "foreign.npz", x=np.zeros(3))
+    for content in (b"", whole[: len(whole) // 2], (tmp_path / "foreign.npz").read_bytes()):
+        (tmp_path / "wrong.npz").write_bytes(content)
+        with pytest.raises(gb.InputError, match="save has written"):
+            gb.load(tmp_path / "wrong.npz")
+
+
+@pytest.mark.parametrize(
+    ("call", "told"),
+    [
+        (lambda: gb.Plate(thickness=True), "thickness"),
+        (lambda: gb.Plate(settings="gauss"), "settings"),
+        (lambda: gb.Plate(cells=(6, 2)).solve(None), "model"),
+        (lambda: gb.Material("yeoh", c10=1, c20=0), "^c30: is missing \\(add c30=…\\)$"),
+        (lambda: gb.Material("neo-hooke", c10=1).with_properties(viscosity="5 Pa*s"), "viscosity"),
+        (lambda: gb.run(None), "give the path of a study"),
+        (lambda: gb.track(None, 1), "images"),
+        (lambda: gb.track([np.eye(60), np.eye(60)], -1), "greater than zero"),
+        (lambda: gb.Plate(thickness="thin", settings={"title": ""}), "^(?!.*thin sheet)"),
+    ],
+)
+def test_what_is_no_argument_is_refused_by_its_name(call, told):
+    with pytest.raises(gb.InputError, match=told):
+        call()
+
+
+def test_one_model_warns_as_the_study_does():
+    gel = gb.Material("neo-hooke", c10=0.05).with_properties(viscosity={"relaxation": {"share": 0.3, "time": "2 s"}})
+    plate = gb.Plate(material=gel, **SMALL)
+    viscous = [one for one in plate.run(0.1).warnings if "viscosity" in one]
+    assert viscous and set(viscous) <= set(plate.solve(factors=0.1).warnings)

@@ -326,3 +326,30 @@ def test_the_edge_of_a_mask_is_that_of_the_specimen(root):
     outlined = gb.correct(outline=root / "examples/gel_edge.csv", **known)
     masked = gb.correct(mask=mask, **known)
     assert masked.explained and masked.forces["right"][0].value == pytest.approx(outlined.forces["right"][0].value, rel=1e-3)
+
+
+def test_lists_of_paths_and_arrays_without_heads_are_fitted(root, tmp_path):
+    stretch = np.linspace(1.01, 1.6, 30)
+    stress = 60 * (stretch - stretch**-2)
+    for number in (1, 2):
+        np.savetxt(tmp_path / f"{number}.csv", np.column_stack([stretch, stress]), delimiter=",", header="stretch [-],nominal stress [kPa]", comments="")
+    said = dict(law="neo-hooke", test="uniaxial")
+    of_files = gb.fit([str(tmp_path / "1.csv"), str(tmp_path / "2.csv")], **said)
+    of_array = gb.fit(np.column_stack([stretch - 1, stress]), **said, strain="nominal", stress="nominal", stress_unit="kPa")
+    for found in (of_files, of_array):
+        assert found.parameters["c10"].value == pytest.approx(0.03, rel=1e-3)
+
+
+def test_a_mesh_of_meshio_is_that_of_a_field():
+    meshio = pytest.importorskip("meshio")
+    x, y = np.meshgrid(np.linspace(0, 16, 17), np.linspace(0, 8, 9), indexing="ij")
+    number = np.arange(x.size).reshape(x.shape)
+    quads = np.stack([number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]], axis=-1).reshape(-1, 4)
+    places = np.column_stack([x.ravel(), y.ravel()])
+    mesh = meshio.Mesh(np.column_stack([places, 0 * places[:, 0]]), [("quad", quads)], point_data={"displacement": places})
+    markers = np.hstack([places, places * (0.4, 1.4**-0.5 - 1)])
+    found = gb.correct(markers, "neo-hooke", 0.5, mesh=mesh, free=["bottom", "top"])
+    expected = 0.5 * 8 * gb.Material.from_card("neo-hooke").stress(1.4)
+    assert found.forces["right"][0].value == pytest.approx(expected, rel=2e-3)
+    with pytest.raises(gb.InputError, match="cell_size"):
+        gb.correct(markers, "neo-hooke", 0.5, cell_size=-1)

@@ -75,3 +75,14 @@ def test_a_drive_has_its_defaults_and_mappings_take_quantities():
     material = gb.Material("neo-hooke", c10=quantity(50, "kPa"))
     assert material.shear_modulus == pytest.approx(0.1)
     assert 'bulk_modulus = "5.0 MPa"' in material.with_properties(volume={"bulk_modulus": 5}).text
+
+
+def test_a_motion_is_that_of_the_sheet_it_was_made_of():
+    sheet = plate()
+    motion = gb.Motion(sheet, "20ms", drive={"motion": "hold"}, density="1020 kg/m^3")
+    text = motion.study()
+    sheet.thickness = 2
+    motion.sheet.thickness = 2
+    assert motion.study() == text and "1.0 mm" in repr(motion) and 'interval = "0.0002 s"' in text
+    with pytest.raises(AttributeError, match="create another Motion"):
+        motion.duration = 5

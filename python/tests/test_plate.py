@@ -247,7 +247,7 @@ def test_ten_thousand_calls_leave_nothing_behind():
 def test_what_is_assigned_to_a_plate_has_an_effect_or_is_refused():
     plate = gb.Plate(30, 10, 2, "neo-hooke", cells=(6, 2))
     plate.thickness = "0.1 cm"
-    assert (plate.thickness, plate.length, plate.cells) == (1.0, 30.0, [6, 2])
+    assert (plate.thickness, plate.length, plate.cells) == (1.0, 30.0, (6, 2))
     with pytest.raises(gb.InputError, match="width"):
         plate.width = -3
     assert plate.width == 10.0

@@ -84,11 +84,15 @@ pub fn estimate(
     match estimate {
         // Where no field has such forces, the field of the markers alone is compared with them.
         Err(Error::Solve { .. }) => compared(),
-        // A wrong force leaves smooth residuals too, which must not pass for noise.
-        Ok(estimate) if estimate.verdict.answer == Answer::Undecided => match compared() {
-            Ok(other) if other.force_checks.iter().any(ForceCheck::contradicts) => Ok(other),
-            _ => Ok(estimate),
-        },
+        // A wrong force leaves smooth residuals too, which must not pass for noise, and changes the field towards it.
+        Ok(estimate)
+            if [Answer::Undecided, Answer::NotExplained].contains(&estimate.verdict.answer) =>
+        {
+            match compared() {
+                Ok(other) if other.force_checks.iter().any(ForceCheck::contradicts) => Ok(other),
+                _ => Ok(estimate),
+            }
+        }
         estimate => estimate,
     }
 }

@@ -125,7 +125,8 @@ fn all_free<'a>(task: &Task<'a>, given: &[Edge]) -> Option<(NearestField<'a>, Ve
     settle(task, free, edges).ok()
 }
 
-/// Frees edges as long as the data do not contradict it.
+/// Frees edges as long as the data do not contradict it, and two remain loaded: where one alone would be, no force could act, however
+/// little the data know of it.
 fn from_loaded<'a>(
     task: &Task<'a>,
     mut nearest_field: NearestField<'a>,
@@ -136,7 +137,7 @@ fn from_loaded<'a>(
     for index in open {
         let mut freed = edges.clone();
         freed[index].condition = EdgeCondition::Free;
-        if !freed.iter().any(Edge::is_loaded) {
+        if freed.iter().filter(|edge| edge.is_loaded()).count() < 2 {
             break;
         }
         if nearest_field.is_pulled(index)? {

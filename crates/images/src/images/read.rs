@@ -86,6 +86,10 @@ pub fn list(paths: &[PathBuf]) -> Result<Vec<ImageFile>, Error> {
     for path in paths {
         files.extend(expanded(path)?);
     }
+    // A shell puts frame10 before frame2.
+    if files.is_sorted() {
+        files.sort_by_cached_key(|path| in_order(&path.to_string_lossy()));
+    }
     let pages: Vec<Vec<ImageFile>> = files
         .iter()
         .map(|path| pages(path))

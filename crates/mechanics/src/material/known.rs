@@ -8,6 +8,7 @@ use super::parameters::{Parameter, StrainMeasure, StressMeasure};
 use super::registry::{Law, MARLOW_TABLE, SWELLING};
 use super::volume::{LARGEST_POISSON_RATIO, VolumeEnergy};
 use crate::error::{Diagnostic, Error, nearest};
+use crate::units::{self, Dimension};
 
 mod codes;
 mod draft;
@@ -77,7 +78,12 @@ impl Known {
                 hint,
             ));
         }
-        let moduli = self.moduli.solved()?;
+        let of_parameters = self.ratio_of_parameters(&entries.parameters)?;
+        let moduli = Moduli {
+            poisson_ratio: self.moduli.poisson_ratio.or(of_parameters),
+            ..self.moduli
+        };
+        let moduli = moduli.solved()?;
         let mut draft = Draft {
             law: self.law,
             title: title.to_owned(),
@@ -125,6 +131,31 @@ impl Known {
         Ok(())
     }
 
+    /// Poisson's ratio among the law's own parameters, which Young's modulus alone needs.
+    fn ratio_of_parameters(&self, parameters: &[Parameter]) -> Result<Option<f64>, Error> {
+        if !self.moduli.is_young_alone() {
+            return Ok(None);
+        }
+        let keys = parameters.iter().filter(|one| is_ratio(one));
+        let keys: Vec<&str> = keys.map(|one| one.key).collect();
+        let stated = self.parameters.iter();
+        let stated = stated.filter(|(key, _)| keys.contains(&&**key));
+        let values: Vec<Option<f64>> = stated
+            .map(|(_, value)| units::parse(value, Dimension::Ratio).ok())
+            .collect();
+        if values.len() < keys.len() || values.is_empty() {
+            return Ok(None);
+        }
+        if values.iter().any(|value| *value != values[0]) {
+            let message = format!(
+                "Young's modulus does not determine the parameters of {} with several Poisson's ratios",
+                self.law.name
+            );
+            return Err(Error::input(message, "state the shear modulus instead"));
+        }
+        Ok(values[0])
+    }
+
     fn states(&self, key: &str) -> bool {
         self.parameters.iter().any(|(known, _)| known == key)
     }
@@ -155,14 +186,13 @@ impl Known {
         draft: &mut Draft,
     ) -> Result<(), Error> {
         let name = self.law.name;
-        let is_ratio = |one: &&Parameter| one.key == "poisson_ratio" || one.key.starts_with("nu_");
         let unstated = |one: &&Parameter| is_ratio(one) && !self.states(one.key);
         let ratios: Vec<_> = parameters
             .iter()
             .filter(unstated)
             .map(|one| one.key)
             .collect();
-        let changes_volume = parameters.iter().any(|one| is_ratio(&one));
+        let changes_volume = parameters.iter().any(is_ratio);
         match (changes_volume, moduli.poisson_ratio) {
             (true, Some(0.5)) => Err(Error::input(
                 format!(
@@ -172,6 +202,7 @@ impl Known {
                     "take at most {LARGEST_POISSON_RATIO}, or an incompressible law such as neo-hooke"
                 ),
             )),
+            (true, Some(_)) if ratios.is_empty() && self.moduli.is_young_alone() => Ok(()),
             (true, Some(_)) if ratios.is_empty() => Err(Error::input(
                 "Poisson's ratio is stated twice",
                 "state it as a modulus or as a parameter of the law",
@@ -276,6 +307,11 @@ impl Known {
             ),
         }
     }
+}
+
+/// Whether a parameter is a Poisson's ratio.
+fn is_ratio(one: &Parameter) -> bool {
+    one.key == "poisson_ratio" || one.key.starts_with("nu_")
 }
 
 fn keys(of: &[&Parameter]) -> String {

@@ -112,8 +112,8 @@ impl<'a> Examined<'a> {
 
     /// Its mesh and the study's problem, of equilibria.
     fn problem(&self) -> Option<(&'a BoundaryProblem, &'a Mesh)> {
-        self.models?;
-        Some((&self.specimen.problem, self.best()?.mesh))
+        let problem = (&self.specimen.problem, self.best()?.mesh);
+        (!self.is_motion).then_some(problem)
     }
 
     /// A load or an instant in words.
@@ -181,7 +181,9 @@ fn locking_cells(examined: Examined) -> Option<Found> {
 
 /// A card that relaxes, of which equilibria have the long times alone.
 fn relaxation(examined: Examined) -> Option<Found> {
-    examined.models?;
+    if examined.is_motion {
+        return None;
+    }
     examined.of_cards(|card, _| {
         let message = card.viscosity.left_out()?;
         Some(alone(format!("{message}.")))

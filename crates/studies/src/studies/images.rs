@@ -8,6 +8,8 @@
 
 use std::path::{Path, PathBuf};
 
+use super::markers::IMAGES;
+
 use crate::budget::{Budget, Need};
 use crate::error::{Diagnostic, Error};
 use crate::images::{
@@ -73,6 +75,20 @@ pub struct TrackedImages {
 
 /// Memory of a pixel while images are followed, in bytes: grey values, splines, gradients and their smoothed ones.
 const BYTES_OF_A_PIXEL: f64 = 120.0;
+
+/// How far the mean strain of the pattern may be from that of its points' displacements, and more for each part of it: both differ a little where
+/// strain varies and points are lost.
+const APART: [f64; 2] = [0.03, 0.1];
+
+/// The mean ∂ux/∂X and ∂uy/∂Y of the pattern about its points.
+fn mean_strains(points: &[Option<Tracked>]) -> Option<[f64; 2]> {
+    let found: Vec<&Tracked> = points.iter().flatten().collect();
+    let mean = |axis| {
+        let sum: f64 = found.iter().map(|point| point.gradient[(axis, axis)]).sum();
+        sum / found.len() as f64
+    };
+    (!found.is_empty()).then(|| [mean(0), mean(1)])
+}
 
 /// Whether files are images: all of them by their names, or one folder.
 pub fn are_images(files: &[PathBuf]) -> bool {
@@ -265,10 +281,35 @@ impl TrackedImages {
                 turned_up: true,
                 subset: Some(subset),
                 pixel: Some(self.pixel),
-                ..Understood::of("images")
+                ..Understood::of(IMAGES)
             },
             warnings: self.warnings.clone(),
         }
+    }
+
+    /// The first frame of a series of these images in which the strains of the pattern about its points contradict their displacements, as where
+    /// a pattern that repeats itself was matched with its neighbours.
+    pub fn contradiction(&self, series: &MarkerSeries) -> Option<Diagnostic> {
+        let frames = series.frames.iter();
+        let found = frames.filter_map(|frame| {
+            let (_, points) = self.frames.iter().find(|(of, _)| *of == frame.number)?;
+            let [x, y] = mean_strains(points)?;
+            let gradient = frame.mean_gradient()?;
+            let pairs = [("x", x, gradient[(0, 0)]), ("y", y, gradient[(1, 1)])];
+            let contradicted = pairs.into_iter().find(|(_, own, of_displacements)| {
+                (own - of_displacements).abs() > APART[0] + APART[1] * own.abs()
+            });
+            Some((frame.number, contradicted?))
+        });
+        let (number, (axis, own, of_displacements)) = found.into_iter().next()?;
+        let message = format!(
+            "frame {number}: along {axis} the pattern is stretched to {:.3} on average, but the displacements of its points to {:.3}: points were \
+             matched with others that look alike, as where a pattern repeats itself",
+            1.0 + own,
+            1.0 + of_displacements
+        );
+        let hint = "give the images between them, so that each moves by less than half a period of the pattern, or take a pattern that does not repeat itself";
+        Some(Diagnostic::warning("", message).hint(hint))
     }
 
     /// The number of points that are followed at all.

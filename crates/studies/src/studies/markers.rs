@@ -19,6 +19,7 @@ use crate::markers::{Frame, MarkerSeries, Understood, check_thickness, place_on}
 use crate::material::{Card, PlaneState};
 use crate::mesh::Mesh;
 use crate::results::Finding;
+use crate::units::decimals;
 
 mod alike;
 mod area;
@@ -97,9 +98,20 @@ pub struct MarkerStudy {
     pub doubts: Vec<Finding>,
     /// The mistake that the files seem to hold, from which all other doubts follow.
     pub mistake: Option<Diagnostic>,
+    /// Why the images seem to have been followed wrongly.
+    pub mistaken_images: Option<Diagnostic>,
     /// Where only the markers show the specimen's edge: how far outside of them it may lie, in mm. The intervals of forces include this.
     pub unknown_gap: Option<f64>,
+    /// How well an edge that was traced in images is known, in mm; 0 of others.
+    pub edge_accuracy: f64,
 }
+
+/// How well an edge can be traced in an image, in pixels: that of a mask is as good as its pixels, a line as good as an eye.
+const OF_MASK: f64 = 0.5;
+const OF_LINES: f64 = 0.25;
+
+/// The layout of markers that were followed in images.
+pub(super) const IMAGES: &str = "images";
 
 /// The warning about so many markers outside of the mesh.
 fn of_outside(markers: usize) -> Option<Diagnostic> {
@@ -143,7 +155,7 @@ impl MarkerStudy {
         let SpecimenMesh {
             mut mesh,
             cell_size,
-            origin,
+            mut origin,
             mut warnings,
             doubts,
             unknown_gap,
@@ -173,6 +185,17 @@ impl MarkerStudy {
         let thickness = (card.law.plane_state() == PlaneState::Stress)
             .then(|| check_thickness(&mesh, request.thickness))
             .flatten();
+        let traced = images.as_ref().filter(|_| unknown_gap.is_none());
+        let (pixels, words) = if request.images.mask.is_some() {
+            (OF_MASK, "half")
+        } else {
+            (OF_LINES, "a quarter of")
+        };
+        let edge_accuracy = traced.map_or(0.0, |images| pixels * images.pixel);
+        if edge_accuracy > 0.0 {
+            let accuracy = decimals(edge_accuracy, 4);
+            origin += &format!(", taken to be right to {accuracy} mm, {words} a pixel");
+        }
         let study = Self {
             card,
             regions,
@@ -188,7 +211,9 @@ impl MarkerStudy {
             warnings: [field.warnings, warnings].concat(),
             doubts: of_reading(doubts, thickness),
             mistake: None,
+            mistaken_images: None,
             unknown_gap,
+            edge_accuracy,
         };
         Ok(study.about_equilibrium(images))
     }
@@ -199,6 +224,11 @@ impl MarkerStudy {
         estimates: &'a [FieldEstimate],
     ) -> impl DoubleEndedIterator<Item = (&'a Frame, &'a FieldEstimate)> + ExactSizeIterator {
         self.series.frames.iter().zip(estimates)
+    }
+
+    /// Whether the markers were followed in camera images.
+    fn is_of_images(&self) -> bool {
+        self.understood.layout == IMAGES
     }
 
     /// The frame whose markers move most.
@@ -291,6 +321,7 @@ impl MarkerStudy {
         let law = self.regressed.as_ref();
         let knowledge = Knowledge {
             edge_gap: self.unknown_gap,
+            edge_accuracy: self.edge_accuracy,
             uncertain_law: UncertainLaw::of_card(&self.card),
             ..self.conditions.knowledge(frame.number, law)
         };

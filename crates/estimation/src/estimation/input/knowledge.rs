@@ -44,6 +44,9 @@ pub struct Knowledge {
     /// How far outside of the mesh free edges may lie, in mm, where only markers show the specimen's edge: the errors
     /// of displacement and stress include this.
     pub edge_gap: Option<f64>,
+    /// How far to both sides of the mesh's the free edges may lie, in mm, where they were traced: all errors include this. Without effect beside
+    /// a gap.
+    pub edge_accuracy: f64,
     /// Relative standard deviation of the scale of the picture: a specimen that comes nearer to its camera appears to grow.
     pub scale_deviation: f64,
     /// A law of the cells that belong to no region, in the place of the specimen's, with parameters that are found with the field.

@@ -138,7 +138,7 @@ impl NearestField<'_> {
     }
 
     /// The standard errors of the bodies' forces along x and y in N due to the law's parameters, nothing where none is considered, and due to
-    /// all of them; a common distance of an edge, which only increases forces, is in neither.
+    /// all of them; a common distance of an edge farther out, which only increases forces, is in neither.
     pub(in crate::estimation) fn force_deviations(
         &self,
         considered: &Considered,
@@ -152,7 +152,9 @@ impl NearestField<'_> {
                 direct + dot(&row, considered.answers.column(index).as_slice())
             };
             let mut slopes = DVector::from_fn(considered.slopes.len(), slope);
-            subtract_means(&mut slopes.as_mut_slice()[of_law..], &considered.edges);
+            if self.equations.task.knowledge.edge_gap.is_some() {
+                subtract_means(&mut slopes.as_mut_slice()[of_law..], &considered.edges);
+            }
             let squares = &considered.squares;
             let deviation = |slopes: &DVector<f64>| slopes.dot(&(squares * slopes)).max(0.0).sqrt();
             let all = deviation(&slopes);

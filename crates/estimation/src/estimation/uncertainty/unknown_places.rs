@@ -4,6 +4,7 @@
 //! sₖ = ∂u/∂dₖ                                    dₖ the distance of an edge outside of the mesh's at one of its points, linear
 //!                                                between them ([`super::moved_edges`])
 //! Σₖₗ = E(dₖdₗ) = g²/4,  Σₖₖ = g²/3               each point lies as probably anywhere from nothing to the gap g farther out
+//! Σₖₗ = a²/6,            Σₖₖ = a²/3               edges that are known to ± a: half of the variance is common to all points
 //! ```
 //!
 //! Points are eight gaps apart or more: an edge that is inclined by as little as an eighth against that of the mesh changes the field
@@ -14,9 +15,11 @@ use nalgebra::DMatrix;
 use crate::estimation::input::Edge;
 use crate::estimation::search::NearestField;
 
-/// Points of an edge are so many gaps apart at least, and no more than so many parts of it lie between them.
+/// Points of an edge are so many gaps apart at least, and no more than so many parts of it lie between them; more of an edge that was traced, which
+/// wavers.
 const APART: f64 = 8.0;
 const MOST_PARTS: f64 = 3.0;
+const MOST_TRACED_PARTS: f64 = 12.0;
 
 impl NearestField<'_> {
     /// The forces of the strips beside the free edges in N/mm, each with the number of its edge, and Σ in mm²; nothing where the edges are known.
@@ -24,25 +27,30 @@ impl NearestField<'_> {
         &self,
         edges: &[Edge],
     ) -> (Vec<(usize, Vec<f64>)>, DMatrix<f64>) {
-        let Some(gap) = self.equations.task.knowledge.edge_gap else {
-            return (Vec::new(), DMatrix::zeros(0, 0));
+        let knowledge = self.equations.task.knowledge;
+        let (gap, common, most) = match knowledge.edge_gap {
+            Some(gap) => (gap, 1.0 / 4.0, MOST_PARTS),
+            None => (knowledge.edge_accuracy, 1.0 / 6.0, MOST_TRACED_PARTS),
         };
+        if gap == 0.0 {
+            return (Vec::new(), DMatrix::zeros(0, 0));
+        }
         let free = edges.iter().enumerate();
         let free = free.filter(|(_, edge)| edge.has_strip());
         let strips = free.flat_map(|(index, edge)| {
-            let strips = self.strips_between_points(edge, gap).into_iter();
+            let strips = self.strips_between_points(edge, gap, most).into_iter();
             strips.map(move |strip| (index, strip))
         });
         let strips: Vec<_> = strips.collect();
-        let square = |i, j| gap * gap / if i == j { 3.0 } else { 4.0 };
+        let square = |i, j| gap * gap * if i == j { 1.0 / 3.0 } else { common };
         let squares = DMatrix::from_fn(strips.len(), strips.len(), square);
         (strips, squares)
     }
 
     /// The forces in N/mm of the strips to each side of points along an edge, as wide as linear interpolation between them is.
-    fn strips_between_points(&self, edge: &Edge, gap: f64) -> Vec<Vec<f64>> {
+    fn strips_between_points(&self, edge: &Edge, gap: f64, most: f64) -> Vec<Vec<f64>> {
         let length = edge.segment.length();
-        let parts = (length / (APART * gap)).floor().clamp(1.0, MOST_PARTS);
+        let parts = (length / (APART * gap)).floor().clamp(1.0, most);
         let at = |arc: f64| parts * arc / length;
         let points = 0..=parts as usize;
         let strip = |point: usize| {

@@ -100,6 +100,12 @@ impl Moduli {
 }
 
 impl Moduli {
+    /// Whether Young's modulus is stated and nothing else.
+    pub(super) fn is_young_alone(&self) -> bool {
+        let others = [self.poisson_ratio, self.shear, self.bulk];
+        self.young.is_some() && others.iter().all(Option::is_none)
+    }
+
     /// Refuses moduli that are not positive.
     fn check_signs(&self) -> Result<(), Error> {
         for (name, modulus) in [

@@ -49,11 +49,6 @@ pub fn results(tracked: &TrackedImages, name: String, seconds: f64) -> Results {
                 .map(|frame| step(tracked, frame))
                 .collect(),
             headline: vec![frames(tracked).block(), Block::Paragraph(words(tracked))],
-            blocks: vec![
-                Block::heading("Frames"),
-                frames(tracked).block(),
-                Block::Paragraph(words(tracked)),
-            ],
             figures: figures.unwrap_or_default(),
             files: vec![(MARKERS.to_owned(), Content::Text(table(tracked)))],
             findings,
@@ -118,6 +113,7 @@ fn stretches(frame: &Frame) -> [f64; 2] {
 fn frames(tracked: &TrackedImages) -> Table<&Frame> {
     Table::of(&tracked.series.frames)
         .column("frame", |frame| frame.number.to_string())
+        .column("image", |frame| image(tracked, frame))
         .column("points", |frame| frame.markers.len().to_string())
         .column("largest displacement [mm]", |frame| number(largest(frame)))
         .column("mean stretch along x", |frame| {
@@ -129,6 +125,13 @@ fn frames(tracked: &TrackedImages) -> Table<&Frame> {
         .column("standard deviation [pixels]", |frame| {
             number(deviation(tracked, frame))
         })
+}
+
+/// The name of a frame's image.
+fn image(tracked: &TrackedImages, frame: &Frame) -> String {
+    let mut files = tracked.files.1.iter();
+    let file = files.find(|(number, _)| *number == frame.number);
+    file.map_or_else(String::new, |(_, file)| file.name())
 }
 
 fn words(tracked: &TrackedImages) -> String {
@@ -177,9 +180,11 @@ fn step(tracked: &TrackedImages, frame: &Frame) -> Step {
 /// Frames in which many points are lost.
 fn findings(tracked: &TrackedImages) -> Vec<Finding> {
     const MANY: f64 = 0.1;
+    // The specimen is seldom smaller beside its image, where neither outline nor mask says where it is.
+    const LEAST: usize = 4;
     let frames = &tracked.series.frames;
     let most = frames.iter().map(|frame| frame.markers.len()).max();
-    let most = most.unwrap_or(0);
+    let most = most.unwrap_or(0).max(tracked.points() / LEAST);
     let has_few = |frame: &&Frame| ((most - frame.markers.len()) as f64) > MANY * most as f64;
     let all: Vec<usize> = frames.iter().map(|frame| frame.number).collect();
     let few: Vec<usize> = frames
@@ -187,16 +192,16 @@ fn findings(tracked: &TrackedImages) -> Vec<Finding> {
         .filter(has_few)
         .map(|frame| frame.number)
         .collect();
-    let message = || {
-        format!(
-            "more than a tenth of the points are lost in frame {}",
-            runs(&all, &few)
-        )
-    };
+    let message = || format!("many of the points are lost in frame {}", runs(&all, &few));
     let remedy = "look at these images: the pattern leaves them, is covered, or changes";
     let finding =
         (!few.is_empty()).then(|| Finding::warning("lost-points", (message(), remedy.to_owned())));
-    finding.into_iter().collect()
+    let contradicted = tracked.contradiction(&tracked.series);
+    let contradicted = contradicted.map(|doubt| {
+        let told = (doubt.message, doubt.hint.unwrap_or_default());
+        Finding::doubt("repeated-pattern", told)
+    });
+    finding.into_iter().chain(contradicted).collect()
 }
 
 fn figures(tracked: &TrackedImages, frame: &Frame) -> Vec<Figure> {

@@ -32,7 +32,7 @@ const RULES: [Rule; 9] = [
     (NOT_EXPLAINED, |_, estimate| not_explained(estimate)),
     ("no-measurement", no_measurement),
     ("many-outliers", |_, estimate| many_outliers(estimate)),
-    ("stated-noise", |_, estimate| stated_noise(estimate)),
+    ("stated-noise", stated_noise),
     ("large-strains", large_strains),
     ("beyond-card", beyond_card),
 ];
@@ -216,8 +216,9 @@ fn many_outliers(estimate: &FieldEstimate) -> Option<Doubt> {
 }
 
 /// A stated noise that the data contradict.
-fn stated_noise(estimate: &FieldEstimate) -> Option<Doubt> {
-    let ratio = estimate.noise_ratio?;
+fn stated_noise(study: &MarkerStudy, estimate: &FieldEstimate) -> Option<Doubt> {
+    // That of images is the tracking's, not a user's.
+    let ratio = estimate.noise_ratio.filter(|_| !study.is_of_images())?;
     let message = if estimate.noise_range.is_some() {
         "the markers' noise does not follow the stated noise and varies over the field or between ux and uy; the observed noise is used instead".to_owned()
     } else {

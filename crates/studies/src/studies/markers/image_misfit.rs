@@ -57,6 +57,7 @@ impl MarkerStudy {
                 frame.markers = measured.markers;
             }
         }
+        self.mistaken_images = images.contradiction(&self.series);
         self
     }
 }

@@ -112,6 +112,9 @@ impl Mistake {
 impl MarkerStudy {
     /// The mistake that a file seems to hold, if there is one.
     pub(super) fn likely_mistake(&self, estimates: &[FieldEstimate]) -> Option<Diagnostic> {
+        if self.is_of_images() {
+            return self.mistaken_images.clone();
+        }
         let frames = self.frames_with(estimates);
         let doubtful = frames.filter(|(_, estimate)| may_be_mistaken(estimate));
         let (frame, estimate) =
@@ -181,7 +184,7 @@ impl MarkerStudy {
         frame: &Frame,
         written: Option<&FieldEstimate>,
     ) -> Option<(Mistake, FieldEstimate)> {
-        if self.coarse.is_some() {
+        if self.coarse.is_some() || self.is_of_images() {
             return None;
         }
         let gradient = frame.mean_gradient()?;

@@ -64,7 +64,7 @@ pub fn one_model(
             specimen,
             series: &[ModelSeries::of(kind, &solution, &[])],
             models: None,
-            has_springs: false,
+            has_springs: kind == ModelKind::MassSpring,
             is_motion: false,
         }),
         solution,
