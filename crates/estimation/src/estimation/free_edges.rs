@@ -137,7 +137,8 @@ fn from_loaded<'a>(
     for index in open {
         let mut freed = edges.clone();
         freed[index].condition = EdgeCondition::Free;
-        if freed.iter().filter(|edge| edge.is_loaded()).count() < 2 {
+        let loaded = freed.iter().filter(|edge| edge.is_loaded()).count();
+        if loaded == 0 {
             break;
         }
         if nearest_field.is_pulled(index)? {
@@ -150,7 +151,7 @@ fn from_loaded<'a>(
             probability(nearest_field.fitted(), trial, (&freed, level))
         });
         edges[index].probability = Some(probability);
-        if let (Ok(trial), true) = (trial, probability >= level) {
+        if let (Ok(trial), true) = (trial, probability >= level && loaded > 1) {
             edges[index].condition = EdgeCondition::Free;
             nearest_field = trial;
         }

@@ -5,7 +5,7 @@
 
 use rayon::prelude::*;
 
-use super::{SIZE, STRETCH, Truth, law, specimen, with_grips};
+use super::{SIZE, STRETCH, THICKNESS, Truth, law, noisy, specimen, with_grips};
 use crate::estimation::*;
 use crate::material::sheet::{Kinematics, PlaneTensor};
 use crate::mesh::{CellShape, Mesh};
@@ -186,4 +186,35 @@ fn noise_that_correlates_between_neighbours_is_not_white() {
     )
     .unwrap();
     assert_ne!(result.verdict.answer, Answer::Explained);
+}
+
+/// A sheet that hardly carries anything has edges that no test tells from free ones; one loaded edge alone would exclude every force.
+#[test]
+fn forces_too_small_to_be_seen_have_intervals_that_hold_them() {
+    let mesh = Mesh::plate(SIZE, [10, 6], CellShape::Quad9);
+    let grid = (0..21).flat_map(|i| (0..11).map(move |j| [3.0 * f64::from(i), 3.0 * f64::from(j)]));
+    let grid: Vec<[f64; 2]> = grid.collect();
+    let mut knowledge = with_grips(EdgeCondition::Free);
+    knowledge
+        .edges
+        .retain(|(name, _)| ["bottom", "top"].contains(&&**name));
+    for strain in [1e-4_f64, 3e-4] {
+        let slopes = [strain, (1.0 + strain).powf(-0.5) - 1.0];
+        let gradient = PlaneTensor::from([slopes[0], 0.0, 0.0, slopes[1]]);
+        let stress = law().stress(&Kinematics::new(&gradient).unwrap()).1[0];
+        let force = stress * THICKNESS * SIZE[1];
+        let field = |[x, y]: [f64; 2]| [slopes[0] * x, slopes[1] * y];
+        let holds = (0..SEEDS).into_par_iter().filter(|seed| {
+            let markers = noisy(&grid, &field, 0.02, 900 + seed);
+            let result = estimate(&specimen(&mesh), &markers, &knowledge).unwrap();
+            let forces = result.forces.iter().map(|edge| edge.force[0].interval);
+            let right = |[low, high]: [f64; 2]| low <= force && force <= high;
+            let mirrored = |[low, high]: [f64; 2]| low <= -force && -force <= high;
+            let all: Vec<[f64; 2]> = forces.collect();
+            all.is_empty()
+                || all.iter().any(|one| right(*one)) && all.iter().any(|one| mirrored(*one))
+        });
+        let share = holds.count() as f64 / SEEDS as f64;
+        assert!(share > 0.85, "{strain}: {share}");
+    }
 }
