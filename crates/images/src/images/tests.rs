@@ -143,6 +143,25 @@ fn small_motions_are_followed_with_intervals_that_hold() {
     }
 }
 
+/// An affine subset does not follow a curved displacement to its noise.
+#[test]
+fn intervals_hold_where_the_strain_varies() {
+    let size = [300, 300];
+    let wave = |y: f64| 3.0 * (y / 25.0).sin();
+    for pattern in [speckle(1), natural(2)] {
+        let cameras = cameras(size, 0.02);
+        let first = cameras[0].frame(&pattern, |x| x);
+        let other = cameras[1].frame(&pattern, |[x, y]| [x - wave(y), y]);
+        let settings = Settings::default();
+        let mut tracker = Tracker::new(&first, &other, &Region::full(size), settings).unwrap();
+        let tracked = tracker.follow(&other).unwrap();
+        let field = |[_, y]: [f64; 2]| [wave(y), 0.0];
+        let accuracy = figures(&tracked, &centres(&tracker), size, &field);
+        show("wave", &accuracy, &tracker);
+        assert!((0.88..0.99).contains(&accuracy.covered));
+    }
+}
+
 #[test]
 fn patches_share_no_pixel_and_their_intervals_hold() {
     let size = [400, 400];

@@ -1,5 +1,6 @@
 //! The pattern of a first image followed through later ones.
 
+use super::curvature::add_curvature;
 use super::defects::{dead, repaired, saturated, warnings};
 use super::gradient::Reference;
 use super::grey::GreyImage;
@@ -194,7 +195,10 @@ impl Tracker {
             .iter()
             .zip(&self.grid.points)
             .map(|(state, point)| Some(state.as_ref()?.tracked(*point)));
-        let tracked = tracked.collect();
+        let mut tracked: Vec<Option<Tracked>> = tracked.collect();
+        if self.order == Order::Affine {
+            add_curvature(&self.grid, self.spacing, self.half, &mut tracked);
+        }
         let kept = self.before.take().map(|(_, states)| states);
         let states = states
             .into_iter()

@@ -56,6 +56,7 @@ pub use alike::ComparedFrames;
 pub use area::Area;
 pub use conditions::{Conditions, EdgesByName, TEMPLATE, measured_force};
 use finding::once;
+pub(super) use headline::mistaken;
 pub use machine::{ForceColumn, FrameForces};
 pub use materials::in_plane;
 use materials::{check_regions, of_divided, of_materials};

@@ -11,11 +11,13 @@ use std::fmt::Write;
 use serde_json::{Map, json};
 
 use super::TrackedImages;
+use crate::error::Diagnostic;
 use crate::markers::{Frame, Marker};
 use crate::results::{
     Block, Content, FieldFigure, Figure, Finding, Outcome, Panel, Results, Step, Table,
 };
 use crate::studies::markers::finding::runs;
+use crate::studies::markers::mistaken;
 use crate::units::number;
 
 /// The `kind` of these results.
@@ -31,7 +33,8 @@ pub fn results(tracked: &TrackedImages, name: String, seconds: f64) -> Results {
         .frames
         .last()
         .map(|frame| figures(tracked, frame));
-    let findings = findings(tracked);
+    let contradicted = tracked.contradiction(&tracked.series);
+    let findings = findings(tracked, contradicted.as_ref());
     Results {
         name,
         title: "Tracked images".to_owned(),
@@ -48,7 +51,10 @@ pub fn results(tracked: &TrackedImages, name: String, seconds: f64) -> Results {
                 .iter()
                 .map(|frame| step(tracked, frame))
                 .collect(),
-            headline: vec![frames(tracked).block(), Block::Paragraph(words(tracked))],
+            headline: [frames(tracked).block(), Block::Paragraph(words(tracked))]
+                .into_iter()
+                .chain(contradicted.as_ref().map(mistaken))
+                .collect(),
             figures: figures.unwrap_or_default(),
             files: vec![(MARKERS.to_owned(), Content::Text(table(tracked)))],
             findings,
@@ -177,8 +183,8 @@ fn step(tracked: &TrackedImages, frame: &Frame) -> Step {
     }
 }
 
-/// Frames in which many points are lost.
-fn findings(tracked: &TrackedImages) -> Vec<Finding> {
+/// Frames in which many points are lost, and a pattern that contradicts their displacements.
+fn findings(tracked: &TrackedImages, contradicted: Option<&Diagnostic>) -> Vec<Finding> {
     const MANY: f64 = 0.1;
     // The specimen is seldom smaller beside its image, where neither outline nor mask says where it is.
     const LEAST: usize = 4;
@@ -196,9 +202,11 @@ fn findings(tracked: &TrackedImages) -> Vec<Finding> {
     let remedy = "look at these images: the pattern leaves them, is covered, or changes";
     let finding =
         (!few.is_empty()).then(|| Finding::warning("lost-points", (message(), remedy.to_owned())));
-    let contradicted = tracked.contradiction(&tracked.series);
     let contradicted = contradicted.map(|doubt| {
-        let told = (doubt.message, doubt.hint.unwrap_or_default());
+        let told = (
+            doubt.message.clone(),
+            doubt.hint.clone().unwrap_or_default(),
+        );
         Finding::doubt("repeated-pattern", told)
     });
     finding.into_iter().chain(contradicted).collect()

@@ -46,7 +46,7 @@ pub fn headline(study: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> 
 }
 
 /// A mistake in the files, which stands before figures that nobody measured.
-fn mistaken(mistake: &Diagnostic) -> Block {
+pub(in crate::studies) fn mistaken(mistake: &Diagnostic) -> Block {
     let hint = mistake.hint.as_deref().unwrap_or_default();
     Block::Paragraph(format!("Doubtful: {}. Remedy: {hint}.", mistake.message))
 }
