@@ -1,5 +1,6 @@
 //! The position of a specimen's edge outside of its outermost markers.
 
+use super::IMAGES;
 use super::request::Request;
 use crate::error::{Diagnostic, Error};
 use crate::markers::{Subset, Understood};
@@ -47,7 +48,13 @@ impl EdgePlace {
         if let Some(subset) = &understood.subset {
             let pixel = understood.pixel.unwrap_or(spacing / subset.step);
             if let Ok(outline) = markers.outline.widened(0.5 * subset.size * pixel) {
-                return Ok(Self::of_subset(subset, pixel, outline));
+                let place = Self::of_subset(subset, pixel, outline);
+                let is_of_images = understood.layout == IMAGES;
+                return Ok(if is_of_images {
+                    place.beside_images()
+                } else {
+                    place
+                });
             }
         }
         let message = "the specimen's edge is not known: the outline is that of the markers, which usually end inside the edge";
@@ -124,6 +131,18 @@ impl EdgePlace {
             origin: format!(", widened by {wider} mm, half a subset ({words})"),
             warning: Some(Diagnostic::warning("", message).hint(hint)),
         }
+    }
+}
+
+impl EdgePlace {
+    /// The same of images, in which subsets beside the specimen move with the part of them that shows it.
+    fn beside_images(mut self) -> Self {
+        if let Some(warning) = &mut self.warning {
+            let hint = "state where the specimen is with --outline or --mask: points beside it may be followed with it, and its edge and its forces \
+                 be wrong by as much as half a subset";
+            warning.hint = Some(hint.to_owned());
+        }
+        self
     }
 }
 
