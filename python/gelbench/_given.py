@@ -34,7 +34,8 @@ def path_of(path: PathLike | None) -> str | None:
 
 def _bare(mesh: Any) -> Any:
     """A mesh of meshio with its groups and without its fields, which Gmsh's files may not take."""
-    groups = {name: blocks for name, blocks in mesh.cell_data.items() if name.startswith("gmsh:")}
+    none = [np.zeros(len(block.data), dtype=np.int64) for block in mesh.cells]
+    groups = {name: mesh.cell_data.get(name, none) for name in ("gmsh:physical", "gmsh:geometrical")}
     return type(mesh)(mesh.points, mesh.cells, cell_data=groups, field_data=mesh.field_data, point_sets=mesh.point_sets, cell_sets=mesh.cell_sets)
 
 
