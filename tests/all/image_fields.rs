@@ -21,7 +21,7 @@ use rand_distr::{Distribution, StandardNormal};
 use rayon::prelude::*;
 
 use crate::common::sheets::{STRIP_WITH_HOLE, held, named};
-use patterns::{speckle, weave};
+use patterns::{speckle, tags, weave};
 
 #[expect(
     dead_code,
@@ -193,20 +193,20 @@ fn blurred(rows: &[Vec<f64>]) -> Vec<Vec<f64>> {
     (0..rows.len()).map(row).collect()
 }
 
-/// The edge of the strip in the image, with the hole as a polygon of its area.
-fn outline(folder: &Path) -> PathBuf {
+/// The edge of the strip in the image, with the hole as a polygon of its area, everywhere so many mm farther out.
+fn outline(folder: &Path, farther: f64) -> PathBuf {
     const CORNERS: usize = 128;
     let mut text = "x [mm],y [mm],line\n".to_owned();
     for [x, y] in [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]] {
         let _ = writeln!(
             text,
             "{},{},1",
-            MIDDLE[0] + x * SIZE[0],
-            MIDDLE[1] + y * SIZE[1]
+            MIDDLE[0] + x * (SIZE[0] + 2.0 * farther),
+            MIDDLE[1] + y * (SIZE[1] + 2.0 * farther)
         );
     }
     let step = TAU / CORNERS as f64;
-    let radius = RADIUS * (step / step.sin()).sqrt();
+    let radius = (RADIUS - farther) * (step / step.sin()).sqrt();
     for corner in 0..CORNERS {
         let (sine, cosine) = (step * corner as f64).sin_cos();
         let _ = writeln!(
@@ -222,7 +222,19 @@ fn outline(folder: &Path) -> PathBuf {
 }
 
 fn corrected(folder: &Path, images: Vec<ImageFile>, card: &str) -> (MarkerStudy, FieldEstimate) {
-    let grip = |name: &str| (name.to_owned(), EdgeCondition::Rigid);
+    corrected_within(folder, outline(folder, 0.0), &[], (images, card))
+}
+
+fn corrected_within(
+    folder: &Path,
+    edge: PathBuf,
+    free: &[&str],
+    (images, card): (Vec<ImageFile>, &str),
+) -> (MarkerStudy, FieldEstimate) {
+    let grips = ["left", "right"].map(|name| (name, EdgeCondition::Rigid));
+    let free = free.iter().map(|name| (*name, EdgeCondition::Free));
+    let edges = grips.into_iter().chain(free);
+    let edges = edges.map(|(name, condition)| (name.to_owned(), condition));
     std::fs::write(folder.join("card.toml"), card).unwrap();
     let request = Request {
         files: Vec::new(),
@@ -236,12 +248,12 @@ fn corrected(folder: &Path, images: Vec<ImageFile>, card: &str) -> (MarkerStudy,
         },
         material: folder.join("card.toml").display().to_string(),
         thickness: 2.0,
-        mesh: MeshSource::Outline(outline(folder)),
+        mesh: MeshSource::Outline(edge),
         cell_size: None,
         shape: CellShape::Triangle6,
         holes: true,
         conditions: Conditions {
-            edges: vec![grip("left"), grip("right")],
+            edges: edges.collect(),
             ..Conditions::default()
         },
         forces: None,
@@ -321,4 +333,45 @@ fn images_refute_a_wrong_law() {
     let softer = "law = \"mooney-rivlin\"\n[parameters]\nc10 = \"0 MPa\"\nc01 = \"0.05 MPa\"\n";
     let (_, estimate) = corrected(folder.path(), images.to_vec(), softer);
     assert_eq!(estimate.verdict.answer, Answer::NotExplained);
+}
+
+/// No traced edge is exact: a fifth of a pixel on all sides refutes no law, and the force's interval holds what it changes.
+#[test]
+fn an_edge_that_is_traced_to_a_fifth_of_a_pixel_refutes_no_law() {
+    let folder = tempfile::tempdir().unwrap();
+    let truth = Truth::pulled(20.0);
+    let pattern = speckle(1);
+    for farther in [-0.2, 0.2] {
+        let images = [("rest", false), ("pulled", true)]
+            .map(|(name, pulled)| image(name, &truth.seen(pulled), &*pattern, 0, 0.02));
+        let edge = outline(folder.path(), farther / PIXELS);
+        let (_, estimate) = corrected_within(
+            folder.path(),
+            edge,
+            &["bottom", "top"],
+            (images.to_vec(), NEO_HOOKE),
+        );
+        assert_ne!(estimate.verdict.answer, Answer::NotExplained, "{farther}");
+        let mut forces = estimate.forces.iter();
+        let right = forces.find(|force| force.edge == "right").unwrap().force[0];
+        let [low, high] = right.interval;
+        println!("{farther}: {low:.4} < {:.4} N < {high:.4}", truth.force);
+        assert!(low < truth.force && truth.force < high, "{farther}");
+        assert!(high - low < 0.03 * truth.force);
+    }
+}
+
+/// Tags that move by more than half of their distance are matched with others; the stretch of the tags themselves shows it.
+#[test]
+fn tags_that_are_matched_with_their_neighbours_are_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let truth = Truth::pulled(30.0);
+    let pattern = tags(8.0);
+    let images = [("rest", false), ("pulled", true)]
+        .map(|(name, pulled)| image(name, &truth.seen(pulled), &*pattern, 0, 0.02));
+    let (study, estimate) = corrected(folder.path(), images.to_vec(), NEO_HOOKE);
+    let error = error(&study, &estimate, &truth);
+    let told = study.mistake.map(|mistake| mistake.message);
+    println!("{error} pixels: {told:?}");
+    assert!(error < 0.1 || told.is_some_and(|told| told.contains("others that look alike")));
 }

@@ -8,8 +8,6 @@
 
 use std::path::{Path, PathBuf};
 
-use super::markers::IMAGES;
-
 use crate::budget::{Budget, Need};
 use crate::error::{Diagnostic, Error};
 use crate::images::{
@@ -89,6 +87,9 @@ fn mean_strains(points: &[Option<Tracked>]) -> Option<[f64; 2]> {
     };
     (!found.is_empty()).then(|| [mean(0), mean(1)])
 }
+
+/// The layout of markers that were followed in images.
+pub const IMAGES: &str = "images";
 
 /// Whether files are images: all of them by their names, or one folder.
 pub fn are_images(files: &[PathBuf]) -> bool {

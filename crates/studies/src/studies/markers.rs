@@ -19,7 +19,7 @@ use crate::markers::{Frame, MarkerSeries, Understood, check_thickness, place_on}
 use crate::material::{Card, PlaneState};
 use crate::mesh::Mesh;
 use crate::results::Finding;
-use crate::units::decimals;
+use crate::studies::images::IMAGES;
 
 mod alike;
 mod area;
@@ -107,13 +107,6 @@ pub struct MarkerStudy {
     pub edge_accuracy: f64,
 }
 
-/// How well an edge can be traced in an image, in pixels: that of a mask is as good as its pixels, a line as good as an eye.
-const OF_MASK: f64 = 0.5;
-const OF_LINES: f64 = 0.25;
-
-/// The layout of markers that were followed in images.
-pub(super) const IMAGES: &str = "images";
-
 /// The warning about so many markers outside of the mesh.
 fn of_outside(markers: usize) -> Option<Diagnostic> {
     let message = format!("markers outside the mesh: {markers}");
@@ -156,7 +149,7 @@ impl MarkerStudy {
         let SpecimenMesh {
             mut mesh,
             cell_size,
-            mut origin,
+            origin,
             mut warnings,
             doubts,
             unknown_gap,
@@ -166,10 +159,8 @@ impl MarkerStudy {
         request.conditions.suit(&mesh, &field.series)?;
         check_regions(&regions, &mesh)?;
         let regressed = request.conditions.regressed_law(&card)?;
-        let coarse = match request.mesh {
-            MeshSource::File(..) => field.mesh,
-            _ => None,
-        };
+        let is_of_file = matches!(request.mesh, MeshSource::File(..));
+        let coarse = field.mesh.filter(|_| is_of_file);
         let mut placed = place_on(&mesh, &field.series)?;
         if let Some(coarse) = &coarse {
             check_complete(coarse, &field.series)?;
@@ -186,17 +177,6 @@ impl MarkerStudy {
         let thickness = (card.law.plane_state() == PlaneState::Stress)
             .then(|| check_thickness(&mesh, request.thickness))
             .flatten();
-        let traced = images.as_ref().filter(|_| unknown_gap.is_none());
-        let (pixels, words) = if request.images.mask.is_some() {
-            (OF_MASK, "half")
-        } else {
-            (OF_LINES, "a quarter of")
-        };
-        let edge_accuracy = traced.map_or(0.0, |images| pixels * images.pixel);
-        if edge_accuracy > 0.0 {
-            let accuracy = decimals(edge_accuracy, 4);
-            origin += &format!(", taken to be right to {accuracy} mm, {words} a pixel");
-        }
         let study = Self {
             card,
             regions,
@@ -214,9 +194,9 @@ impl MarkerStudy {
             mistake: None,
             mistaken_images: None,
             unknown_gap,
-            edge_accuracy,
+            edge_accuracy: 0.0,
         };
-        Ok(study.about_equilibrium(images))
+        Ok(study.about_equilibrium(images, request.images.mask.is_some()))
     }
 
     /// The frames with their estimates.

@@ -59,7 +59,7 @@ pub struct Knowledge {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Unnamed {
     /// All parts begin as loaded. One after the other, the longest first, is taken as free where the data do not contradict this:
-    /// where the misfit grows by no more than noise would cause in ninety-nine of a hundred cases (F test). One stays loaded.
+    /// where the misfit grows by no more than noise would cause in ninety-nine of a hundred cases (F test). Two stay loaded.
     #[default]
     Tested,
     /// All parts are loaded: the mesh ends inside of the specimen.

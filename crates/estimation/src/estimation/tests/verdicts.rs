@@ -174,3 +174,37 @@ fn a_roller_is_proposed_where_an_edge_is_stated_to_be_free_or_a_grip() {
         }
     }
 }
+
+/// A force that the field cannot have is told, and does not pull the field towards it.
+#[test]
+fn a_wrong_force_leaves_the_field_as_the_markers_show_it() {
+    let (truth, mesh) = (Truth::new(), estimate_mesh());
+    let markers = truth.markers(0.02, 4);
+    for share in [0.4, 0.6, 1.5] {
+        let knowledge = Knowledge {
+            forces: vec![MeasuredForce {
+                edge: "right".into(),
+                axis: 0,
+                force: share * truth.force,
+                standard_deviation: 0.01 * truth.force,
+                common_deviation: 0.0,
+            }],
+            ..with_grips(EdgeCondition::Rigid)
+        };
+        let result = estimate(&specimen(&mesh), &markers, &knowledge).unwrap();
+        assert_eq!(result.verdict.answer, Answer::NotExplained);
+        assert!(truth.error(&mesh, &result.displacement) < 0.02, "{share}");
+        let factor = result
+            .verdict
+            .trials
+            .iter()
+            .find_map(|trial| match trial.alternative {
+                Alternative::Factor(factor) => Some(factor),
+                _ => None,
+            });
+        assert!(
+            (factor.unwrap() / share - 1.0).abs() < 0.01,
+            "{share}: {factor:?}"
+        );
+    }
+}

@@ -61,6 +61,9 @@ fn pages_of_a_file_and_files_of_a_folder_are_frames_in_order() {
         files.iter().map(ImageFile::name).collect::<Vec<_>>(),
         ["f9", "f10"]
     );
+    let of_shell = ["f10.png", "f9.png"].map(|name| folder.path().join(name));
+    let of_shell = list(&of_shell).unwrap();
+    assert_eq!([of_shell[0].name(), of_shell[1].name()], ["f9", "f10"]);
     assert_eq!(list(&[folder.path().to_owned()]).unwrap().len(), 6);
 }
 

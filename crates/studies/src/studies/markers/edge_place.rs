@@ -1,10 +1,10 @@
 //! The position of a specimen's edge outside of its outermost markers.
 
-use super::IMAGES;
 use super::request::Request;
 use crate::error::{Diagnostic, Error};
 use crate::markers::{Subset, Understood};
 use crate::mesh::{Outline, OutlineFault, OutlineOfPoints};
+use crate::studies::images::IMAGES;
 use crate::units::{decimals, extents};
 
 /// Outermost markers farther than this from their outline, in spacings, leave it open where the edge lies.

@@ -13,6 +13,7 @@ use crate::images::{Patches, Warp, series};
 use crate::markers::{Frame, Marker};
 use crate::statistics::median;
 use crate::studies::images::TrackedImages;
+use crate::units::decimals;
 
 /// The most fields about which a frame is measured.
 const MOST: usize = 4;
@@ -37,10 +38,19 @@ impl MarkerStudy {
     ///
     /// Where noise is so large that a patch alone does not lead to its displacement, neither may tracking: then each frame also starts from the
     /// field of the frame before, the first one from rest, and the field counts about which the patches are the more similar.
-    pub(super) fn about_equilibrium(mut self, images: Option<TrackedImages>) -> Self {
+    pub(super) fn about_equilibrium(
+        mut self,
+        images: Option<TrackedImages>,
+        is_mask: bool,
+    ) -> Self {
         let Some(images) = images else {
             return self;
         };
+        if self.unknown_gap.is_none() {
+            let (accuracy, words) = accuracy(images.pixel, is_mask);
+            self.edge_accuracy = accuracy;
+            self.mesh_origin += &words;
+        }
         let misfit = ImageMisfit {
             images: &images,
             patches: images.tracker.patches(),
@@ -60,6 +70,25 @@ impl MarkerStudy {
         self.mistaken_images = images.contradiction(&self.series);
         self
     }
+}
+
+/// How well an edge can be traced in an image, in pixels: that of a mask is as good as its pixels, a line as good as an eye.
+const OF_MASK: f64 = 0.5;
+const OF_LINES: f64 = 0.25;
+
+/// How well the edge of a mask or of lines is known in mm, and this in words.
+fn accuracy(pixel: f64, is_mask: bool) -> (f64, String) {
+    let (share, words) = if is_mask {
+        (OF_MASK, "half")
+    } else {
+        (OF_LINES, "a quarter of")
+    };
+    let accuracy = share * pixel;
+    let words = format!(
+        ", taken to be right to {} mm, {words} a pixel",
+        decimals(accuracy, 4)
+    );
+    (accuracy, words)
 }
 
 /// The images of a study, and the patches of the first one.

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::area::Area;
 use super::conditions::{Conditions, measured_force};
-use super::machine::ForceColumn;
+use super::machine::{ForceColumn, FrameClock};
 use super::specimen_file::SpecimenFile;
 use crate::document::{Bound, Document, Faults, Key, Section};
 use crate::error::Error;
@@ -56,6 +56,18 @@ pub fn keys(text: &str) -> Vec<Key> {
     faults.keys()
 }
 
+/// How the frames' times and those of the testing machine belong together.
+fn clock(root: &Section) -> FrameClock {
+    let time = |key, bound| {
+        let has = root.has(key);
+        has.then(|| root.quantity(key, Dimension::Time, bound))
+    };
+    FrameClock {
+        interval: time("frame_interval", Bound::Positive),
+        offset: time("clock_offset", Bound::Any).unwrap_or_default(),
+    }
+}
+
 /// Reads all keys; faults are recorded.
 fn read(root: &Section, folder: &Path) -> Conditions {
     let length = |key, bound| {
@@ -73,13 +85,7 @@ fn read(root: &Section, folder: &Path) -> Conditions {
         let half = Bound::Within(0.0, 0.5);
         conditions.scale_deviation = root.quantity("scale_error", Dimension::Ratio, half);
     }
-    if root.has("frame_interval") {
-        let interval = root.quantity("frame_interval", Dimension::Time, Bound::Positive);
-        conditions.clock.interval = Some(interval);
-    }
-    if root.has("clock_offset") {
-        conditions.clock.offset = root.quantity("clock_offset", Dimension::Time, Bound::Any);
-    }
+    conditions.clock = clock(root);
     if root.has("robust") {
         conditions.robust = root.choice("robust", &Robust::NAMES);
     }
