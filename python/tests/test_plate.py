@@ -252,8 +252,8 @@ def test_what_is_assigned_to_a_plate_has_an_effect_or_is_refused():
         plate.width = -3
     assert plate.width == 10.0
     plate.thickness = 2
-    for name in ("cells", "factors"):
-        with pytest.raises(AttributeError, match="create another Plate"):
+    for name, told in (("cells", "create another Plate"), ("factors", "no attribute factors")):
+        with pytest.raises(AttributeError, match=told):
             setattr(plate, name, 99)
     soft = plate.solve("mass-spring", 0.2).force
     c10 = plate.material.parameters["c10"].value
