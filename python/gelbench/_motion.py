@@ -115,7 +115,7 @@ class Motion:
             "kind": "motion",
             "material": {} if density is None else {"density": text(density, "kg/m^3", "density")},
             "time": {"duration": length, "interval": _hundredth(length) if interval is None else text(interval, "s", "interval")},
-            "probe": [{"name": name, "at": [text(one, "mm", "probes") for one in at]} for name, at in _of_names(probes)],
+            "probe": [{"name": name, "at": [text(one, "mm", "probes") for one in at]} for name, at in _points_by_name(probes)],
         }
         if gravity is not None:
             if isinstance(gravity, str) or np.ndim(np.asarray(gravity, dtype=object)) != 1 or len(gravity) != 2:
@@ -188,7 +188,7 @@ def _of_sheet(sheet: Plate | Specimen, start: str, drive: dict[str, Any]) -> dic
     return {**kept, **conditions, "start": {"factor": start}, "path": path}
 
 
-def _of_names(probes: Mapping[str, Sequence[Quantity]] | None) -> list[tuple[str, Sequence[Quantity]]]:
+def _points_by_name(probes: Mapping[str, Sequence[Quantity]] | None) -> list[tuple[str, Sequence[Quantity]]]:
     if not isinstance(probes or {}, Mapping):
         raise fault("probes", f"is {probes!r}", 'give points by name, such as {"middle": (75, 25)}')
     return list((probes or {}).items())

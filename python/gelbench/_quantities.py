@@ -67,8 +67,8 @@ def text(value: Any, unit: str, argument: str) -> str:
     if isinstance(value, SupportsUnits):
         value = converted(value, unit, argument)
     try:
-        plain = float("nan" if isinstance(value, (bool, np.bool_)) else value)
-        if np.isnan(plain):
+        plain = float(value)
+        if isinstance(value, (bool, np.bool_)) or np.isnan(plain):
             raise ValueError(value)
     except (TypeError, ValueError):
         hint = f'a number in {unit or "1"}, or a text with a unit'

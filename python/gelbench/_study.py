@@ -308,7 +308,7 @@ def merged(
     return found
 
 
-def path_of(path: PathLike) -> str:
+def _study_path(path: PathLike) -> str:
     """The path of a study."""
     try:
         return os.fspath(path)
@@ -340,7 +340,7 @@ def run(path: PathLike, *, progress: Progress | None = None, allow_large: bool =
     gelbench.SolveError
         If no model has any solution.
     """
-    return Results(_core.run(path_of(path), callback(progress), allow_large))
+    return Results(_core.run(_study_path(path), callback(progress), allow_large))
 
 
 def check(path: PathLike, *, allow_large: bool = False) -> tuple[str, list[str]]:
@@ -358,4 +358,4 @@ def check(path: PathLike, *, allow_large: bool = False) -> tuple[str, list[str]]
     gelbench.InputError
         With every fault of the study.
     """
-    return _core.check(path_of(path), allow_large)
+    return _core.check(_study_path(path), allow_large)

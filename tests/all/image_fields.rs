@@ -264,6 +264,26 @@ fn corrected_within(
     (study, estimate)
 }
 
+/// The images of a truth at rest and pulled.
+fn pair(
+    truth: &Truth,
+    pattern: &(dyn Fn([f64; 2]) -> f64 + Sync),
+    blur: usize,
+    noise: f64,
+) -> Vec<ImageFile> {
+    let states = [("rest", false), ("pulled", true)];
+    let of_state =
+        states.map(|(name, pulled)| image(name, &truth.seen(pulled), pattern, blur, noise));
+    of_state.to_vec()
+}
+
+/// The 95 % interval of the force along x on the right side.
+fn right_interval(estimate: &FieldEstimate) -> [f64; 2] {
+    let mut forces = estimate.forces.iter();
+    let right = forces.find(|force| force.edge == "right").unwrap();
+    right.force[0].interval
+}
+
 /// The share of displacements within their intervals.
 fn covered(study: &MarkerStudy, estimate: &FieldEstimate, truth: &Truth) -> f64 {
     let mut inside = 0;
@@ -301,12 +321,9 @@ fn images_of_a_strip_with_a_hole_lead_to_its_field_and_force() {
         ("weave", weave(2), 10.0, 0, 0.02, 0.7),
     ] {
         let truth = Truth::pulled(pull);
-        let rest = image("rest", &truth.seen(false), &*pattern, blur, noise);
-        let loaded = image("pulled", &truth.seen(true), &*pattern, blur, noise);
-        let (study, estimate) = corrected(folder.path(), vec![rest, loaded], NEO_HOOKE);
-        let mut forces = estimate.forces.iter();
-        let right = forces.find(|force| force.edge == "right").unwrap().force[0];
-        let [low, high] = right.interval;
+        let images = pair(&truth, &*pattern, blur, noise);
+        let (study, estimate) = corrected(folder.path(), images, NEO_HOOKE);
+        let [low, high] = right_interval(&estimate);
         let covered = covered(&study, &estimate, &truth);
         let error = error(&study, &estimate, &truth);
         println!(
@@ -327,11 +344,9 @@ fn images_of_a_strip_with_a_hole_lead_to_its_field_and_force() {
 fn images_refute_a_wrong_law() {
     let folder = tempfile::tempdir().unwrap();
     let truth = Truth::pulled(30.0);
-    let pattern = speckle(1);
-    let images = [("rest", false), ("pulled", true)]
-        .map(|(name, pulled)| image(name, &truth.seen(pulled), &*pattern, 0, 0.05));
+    let images = pair(&truth, &*speckle(1), 0, 0.05);
     let softer = "law = \"mooney-rivlin\"\n[parameters]\nc10 = \"0 MPa\"\nc01 = \"0.05 MPa\"\n";
-    let (_, estimate) = corrected(folder.path(), images.to_vec(), softer);
+    let (_, estimate) = corrected(folder.path(), images, softer);
     assert_eq!(estimate.verdict.answer, Answer::NotExplained);
 }
 
@@ -340,21 +355,17 @@ fn images_refute_a_wrong_law() {
 fn an_edge_that_is_traced_to_a_fifth_of_a_pixel_refutes_no_law() {
     let folder = tempfile::tempdir().unwrap();
     let truth = Truth::pulled(20.0);
-    let pattern = speckle(1);
+    let images = pair(&truth, &*speckle(1), 0, 0.02);
     for farther in [-0.2, 0.2] {
-        let images = [("rest", false), ("pulled", true)]
-            .map(|(name, pulled)| image(name, &truth.seen(pulled), &*pattern, 0, 0.02));
         let edge = outline(folder.path(), farther / PIXELS);
         let (_, estimate) = corrected_within(
             folder.path(),
             edge,
             &["bottom", "top"],
-            (images.to_vec(), NEO_HOOKE),
+            (images.clone(), NEO_HOOKE),
         );
         assert_ne!(estimate.verdict.answer, Answer::NotExplained, "{farther}");
-        let mut forces = estimate.forces.iter();
-        let right = forces.find(|force| force.edge == "right").unwrap().force[0];
-        let [low, high] = right.interval;
+        let [low, high] = right_interval(&estimate);
         println!("{farther}: {low:.4} < {:.4} N < {high:.4}", truth.force);
         assert!(low < truth.force && truth.force < high, "{farther}");
         assert!(high - low < 0.03 * truth.force);
@@ -366,12 +377,12 @@ fn an_edge_that_is_traced_to_a_fifth_of_a_pixel_refutes_no_law() {
 fn tags_that_are_matched_with_their_neighbours_are_told() {
     let folder = tempfile::tempdir().unwrap();
     let truth = Truth::pulled(30.0);
-    let pattern = tags(8.0);
-    let images = [("rest", false), ("pulled", true)]
-        .map(|(name, pulled)| image(name, &truth.seen(pulled), &*pattern, 0, 0.02));
-    let (study, estimate) = corrected(folder.path(), images.to_vec(), NEO_HOOKE);
+    let images = pair(&truth, &*tags(8.0), 0, 0.02);
+    let (study, estimate) = corrected(folder.path(), images, NEO_HOOKE);
     let error = error(&study, &estimate, &truth);
-    let told = study.mistake.map(|mistake| mistake.message);
-    println!("{error} pixels: {told:?}");
-    assert!(error < 0.1 || told.is_some_and(|told| told.contains("others that look alike")));
+    let message = study.mistake.map(|mistake| mistake.message);
+    println!("{error} pixels: {message:?}");
+    assert!(
+        error < 0.1 || message.is_some_and(|message| message.contains("others that look alike"))
+    );
 }

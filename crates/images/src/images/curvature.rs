@@ -35,18 +35,18 @@ fn laplacian(
     tracked: &[Option<Tracked>],
 ) -> Option<[f64; 2]> {
     let [x, y] = grid.points[point];
-    let beside = |dx: isize, dy: isize| {
+    let gradient_at = |dx: isize, dy: isize| {
         let position = [x as isize + dx, y as isize + dy];
         let mut others = grid.neighbours[point].iter();
         let other = others.find(|other| grid.points[**other].map(|at| at as isize) == position)?;
         tracked[*other].map(|one| one.gradient)
     };
-    let own = tracked[point]?.gradient;
+    let gradient = tracked[point]?.gradient;
     // Beside a point that is not followed the difference is to this one.
     let slope = |dx: isize, dy: isize| {
-        let (before, after) = (beside(-dx, -dy), beside(dx, dy));
+        let (before, after) = (gradient_at(-dx, -dy), gradient_at(dx, dy));
         let steps = before.iter().chain(&after).count();
-        let change = after.unwrap_or(own) - before.unwrap_or(own);
+        let change = after.unwrap_or(gradient) - before.unwrap_or(gradient);
         (steps > 0).then(|| change / (steps * spacing) as f64)
     };
     let step = spacing as isize;

@@ -56,7 +56,11 @@ impl BoundaryProblem {
         (factor, u): (f64, &[f64]),
     ) -> Result<[f64; 2], Diagnostic> {
         let loads = self.loads.iter().filter(|(group, _)| group == name);
-        let loads = Loads::of(mesh, &loads.cloned().collect::<Vec<_>>(), self.thickness)?;
+        let loads: Vec<_> = loads.cloned().collect();
+        if loads.is_empty() {
+            return Ok([0.0; 2]);
+        }
+        let loads = Loads::of(mesh, &loads, self.thickness)?;
         Ok(loads.resultant(factor, u, &Body::new(mesh, u)).force)
     }
 

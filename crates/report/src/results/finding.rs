@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
 use crate::document::stored::{StaticText, static_text};
+use crate::error::Diagnostic;
 
 /// How much a finding weighs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -50,6 +51,12 @@ impl Finding {
             weight: Weight::Doubt,
             ..Self::warning(rule, finding)
         }
+    }
+
+    /// The same of a diagnostic.
+    pub fn doubt_of(rule: &'static str, diagnostic: Diagnostic) -> Self {
+        let remedy = diagnostic.hint.unwrap_or_default();
+        Self::doubt(rule, (diagnostic.message, remedy))
     }
 
     /// Whether it makes figures doubtful.

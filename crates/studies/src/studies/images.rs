@@ -13,7 +13,7 @@ use crate::error::{Diagnostic, Error};
 use crate::images::{
     GreyImage, ImageFile, Region, Settings, Tracked, Tracker, is_image_path, list, series,
 };
-use crate::markers::{MarkerFiles, MarkerSeries, Subset, Understood, read_lines};
+use crate::markers::{Frame, MarkerFiles, MarkerSeries, Subset, Understood, read_lines};
 
 mod written;
 
@@ -80,12 +80,12 @@ const APART: [f64; 2] = [0.03, 0.1];
 
 /// The mean ∂ux/∂X and ∂uy/∂Y of the pattern about its points.
 fn mean_strains(points: &[Option<Tracked>]) -> Option<[f64; 2]> {
-    let found: Vec<&Tracked> = points.iter().flatten().collect();
+    let followed: Vec<&Tracked> = points.iter().flatten().collect();
     let mean = |axis| {
-        let sum: f64 = found.iter().map(|point| point.gradient[(axis, axis)]).sum();
-        sum / found.len() as f64
+        let strains = followed.iter().map(|point| point.gradient[(axis, axis)]);
+        strains.sum::<f64>() / followed.len() as f64
     };
-    (!found.is_empty()).then(|| [mean(0), mean(1)])
+    (!followed.is_empty()).then(|| [mean(0), mean(1)])
 }
 
 /// The layout of markers that were followed in images.
@@ -291,22 +291,22 @@ impl TrackedImages {
     /// The first frame of a series of these images in which the strains of the pattern about its points contradict their displacements, as where
     /// a pattern that repeats itself was matched with its neighbours.
     pub fn contradiction(&self, series: &MarkerSeries) -> Option<Diagnostic> {
-        let frames = series.frames.iter();
-        let found = frames.filter_map(|frame| {
+        let contradicted = |frame: &Frame| {
             let (_, points) = self.frames.iter().find(|(of, _)| *of == frame.number)?;
             let [x, y] = mean_strains(points)?;
             let gradient = frame.mean_gradient()?;
-            let pairs = [("x", x, gradient[(0, 0)]), ("y", y, gradient[(1, 1)])];
-            let contradicted = pairs.into_iter().find(|(_, own, of_displacements)| {
-                (own - of_displacements).abs() > APART[0] + APART[1] * own.abs()
-            });
-            Some((frame.number, contradicted?))
-        });
-        let (number, (axis, own, of_displacements)) = found.into_iter().next()?;
+            let axes = [("x", x, gradient[(0, 0)]), ("y", y, gradient[(1, 1)])];
+            let is_apart = |(_, strain, of_displacements): &(_, f64, f64)| {
+                (strain - of_displacements).abs() > APART[0] + APART[1] * strain.abs()
+            };
+            Some((frame.number, axes.into_iter().find(is_apart)?))
+        };
+        let (number, (axis, strain, of_displacements)) =
+            series.frames.iter().find_map(contradicted)?;
         let message = format!(
             "frame {number}: along {axis} the pattern is stretched to {:.3} on average, but the displacements of its points to {:.3}: points were \
              matched with others that look alike, as where a pattern repeats itself",
-            1.0 + own,
+            1.0 + strain,
             1.0 + of_displacements
         );
         let hint = "give the images between them, so that each moves by less than half a period of the pattern, or take a pattern that does not repeat itself";

@@ -119,10 +119,8 @@ fn of_reading(outline: Vec<Diagnostic>, thickness: Option<Diagnostic>) -> Vec<Fi
         .into_iter()
         .map(|doubt| ("uncertain-outline", doubt));
     let all = outline.chain(thickness.map(|doubt| ("thickness", doubt)));
-    let doubt = |(rule, doubt): (_, Diagnostic)| {
-        Finding::doubt(rule, (doubt.message, doubt.hint.unwrap_or_default()))
-    };
-    all.map(doubt).collect()
+    all.map(|(rule, doubt)| Finding::doubt_of(rule, doubt))
+        .collect()
 }
 
 impl MarkerStudy {

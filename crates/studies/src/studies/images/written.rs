@@ -202,13 +202,8 @@ fn findings(tracked: &TrackedImages, contradicted: Option<&Diagnostic>) -> Vec<F
     let remedy = "look at these images: the pattern leaves them, is covered, or changes";
     let finding =
         (!few.is_empty()).then(|| Finding::warning("lost-points", (message(), remedy.to_owned())));
-    let contradicted = contradicted.map(|doubt| {
-        let told = (
-            doubt.message.clone(),
-            doubt.hint.clone().unwrap_or_default(),
-        );
-        Finding::doubt("repeated-pattern", told)
-    });
+    let contradicted = contradicted.cloned().into_iter();
+    let contradicted = contradicted.map(|doubt| Finding::doubt_of("repeated-pattern", doubt));
     finding.into_iter().chain(contradicted).collect()
 }
 

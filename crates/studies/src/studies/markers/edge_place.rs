@@ -48,13 +48,8 @@ impl EdgePlace {
         if let Some(subset) = &understood.subset {
             let pixel = understood.pixel.unwrap_or(spacing / subset.step);
             if let Ok(outline) = markers.outline.widened(0.5 * subset.size * pixel) {
-                let place = Self::of_subset(subset, pixel, outline);
                 let is_of_images = understood.layout == IMAGES;
-                return Ok(if is_of_images {
-                    place.beside_images()
-                } else {
-                    place
-                });
+                return Ok(Self::of_subset(subset, pixel, outline, is_of_images));
             }
         }
         let message = "the specimen's edge is not known: the outline is that of the markers, which usually end inside the edge";
@@ -108,8 +103,9 @@ impl EdgePlace {
         })
     }
 
-    /// An outline that is half a subset wider than the markers': the edge is less than a step farther out.
-    fn of_subset(subset: &Subset, pixel: f64, outline: Outline) -> Self {
+    /// An outline that is half a subset wider than the markers': the edge is less than a step farther out. In images, subsets beside the specimen
+    /// move with the part of them that shows it.
+    fn of_subset(subset: &Subset, pixel: f64, outline: Outline, is_of_images: bool) -> Self {
         let [half, step] = [0.5 * subset.size, subset.step].map(|pixels| pixels * pixel);
         let wider = decimals(half, 4);
         let words = format!(
@@ -119,30 +115,23 @@ impl EdgePlace {
         let message = format!(
             "the specimen's edge is assumed to lie {wider} mm outside the outermost markers, half a subset: {words}"
         );
-        let hint = format!(
-            "state the edge with --edge-gap LENGTH, --outline or --mesh; subsets end inside the specimen, less than one step from its edge, so force \
+        let hint = if is_of_images {
+            "state where the specimen is with --outline or --mask: points beside it may be followed with it, and its edge and its forces \
+             be wrong by as much as half a subset".to_owned()
+        } else {
+            format!(
+                "state the edge with --edge-gap LENGTH, --outline or --mesh; subsets end inside the specimen, less than one step from its edge, so force \
              intervals between free edges, and stress errors beside them, include an edge up to {} mm farther out; without free edges, forces \
              are those through the outline",
-            decimals(step, 4)
-        );
+                decimals(step, 4)
+            )
+        };
         Self {
             outline,
             unknown_gap: Some(step),
             origin: format!(", widened by {wider} mm, half a subset ({words})"),
             warning: Some(Diagnostic::warning("", message).hint(hint)),
         }
-    }
-}
-
-impl EdgePlace {
-    /// The same of images, in which subsets beside the specimen move with the part of them that shows it.
-    fn beside_images(mut self) -> Self {
-        if let Some(warning) = &mut self.warning {
-            let hint = "state where the specimen is with --outline or --mask: points beside it may be followed with it, and its edge and its forces \
-                 be wrong by as much as half a subset";
-            warning.hint = Some(hint.to_owned());
-        }
-        self
     }
 }
 

@@ -47,8 +47,7 @@ impl MarkerStudy {
     pub fn all_doubts(&self, estimates: &[FieldEstimate]) -> Vec<Finding> {
         if let Some(mistake) = self.mistake.clone() {
             // All else follows from a field that nobody measured.
-            let mistake = (mistake.message, mistake.hint.unwrap_or_default());
-            return [&[Finding::doubt(MISTAKE, mistake)], &self.doubts[..]].concat();
+            return [&[Finding::doubt_of(MISTAKE, mistake)], &self.doubts[..]].concat();
         }
         let numbers = self.frame_numbers();
         let findings = RULES.iter().flat_map(|(name, rule)| {
