@@ -17,19 +17,19 @@ fn mirrored(index: isize, length: usize) -> usize {
 /// An image filtered with symmetric weights along x and along y: `half[0]` is the weight in the middle.
 pub fn symmetric(image: &GreyImage, half: &[f32]) -> GreyImage {
     let [width, height] = image.size();
+    let reach = half.len() - 1;
     let row = |values: &[f32], out: &mut [f32]| {
-        let reach = half.len() - 1;
-        for (x, out) in out.iter_mut().enumerate() {
-            let inside = x >= reach && x + reach < width;
-            let pair = |k: usize| {
-                if inside {
-                    values[x - k] + values[x + k]
-                } else {
-                    let (x, k) = (x as isize, k as isize);
-                    values[mirrored(x - k, width)] + values[mirrored(x + k, width)]
-                }
+        let at = |x: usize| values[mirrored(x as isize - reach as isize, width)];
+        let padded: Vec<f32> = (0..width + 2 * reach).map(at).collect();
+        for (k, weight) in half.iter().enumerate() {
+            let sides = if k == 0 {
+                vec![reach]
+            } else {
+                vec![reach - k, reach + k]
             };
-            *out = half[0] * values[x] + (1..=reach).map(|k| half[k] * pair(k)).sum::<f32>();
+            for side in sides {
+                add(out, *weight, &padded[side..side + width]);
+            }
         }
     };
     let mut along = vec![0.0; width * height];
@@ -44,14 +44,17 @@ pub fn symmetric(image: &GreyImage, half: &[f32]) -> GreyImage {
             let sides = if k == 0 { vec![y] } else { vec![y - k, y + k] };
             for side in sides {
                 let from = mirrored(side, height) * width;
-                let values = &along[from..from + width];
-                out.iter_mut()
-                    .zip(values)
-                    .for_each(|(out, value)| *out += weight * value);
+                add(out, *weight, &along[from..from + width]);
             }
         }
     });
     GreyImage::new(width, height, both)
+}
+
+fn add(out: &mut [f32], weight: f32, values: &[f32]) {
+    out.iter_mut()
+        .zip(values)
+        .for_each(|(out, value)| *out += weight * value);
 }
 
 /// The weights of a Gaussian of a standard deviation in pixels, which sum to 1 over both sides.

@@ -3,7 +3,7 @@
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use super::noise::Noise;
-use super::warp::functions;
+use super::warp::{DEGREES, functions};
 
 /// A pixel of a subset: distance from the centre, grey value, smoothed gradient and gradient.
 #[derive(Clone, Copy, Debug)]
@@ -26,6 +26,69 @@ pub struct Matrices {
     pub square: f64,
 }
 
+/// Sums over the pixels of the smoothed gradient ĝ, the gradient g and the grey value I without its mean.
+struct Sums {
+    /// Σ φₖ times ĝx, ĝy, gx, gy, and these times I.
+    with_functions: [[f64; 8]; MOST_FUNCTIONS],
+    /// Σ φₖ φₗ times ĝx gx, ĝx gy, ĝy gx, ĝy gy, ĝx ĝx, ĝx ĝy, ĝy ĝy and 1, for l ≤ k.
+    with_products: [[f64; 8]; MOST_FUNCTIONS * (MOST_FUNCTIONS + 1) / 2],
+    /// Σ I², the mean taken out.
+    variation: f64,
+}
+
+const MOST_FUNCTIONS: usize = DEGREES.len();
+
+impl Sums {
+    fn new(pixels: &[Pixel], mean: f64, half: f64, count: usize) -> Self {
+        let scale = 1.0 / half;
+        let mut sums = Self {
+            with_functions: [[0.0; 8]; _],
+            with_products: [[0.0; 8]; _],
+            variation: 0.0,
+        };
+        for pixel in pixels {
+            let phi = functions(f64::from(pixel.x) * scale, f64::from(pixel.y) * scale);
+            let [p, q] = pixel.smooth.map(f64::from);
+            let [r, s] = pixel.slope.map(f64::from);
+            let value = f64::from(pixel.value) - mean;
+            sums.variation += value * value;
+            let factors = [p, q, r, s, p * value, q * value, r * value, s * value];
+            let products = [p * r, p * s, q * r, q * s, p * p, p * q, q * q, 1.0];
+            let mut pair = 0;
+            for k in 0..count {
+                add(&mut sums.with_functions[k], phi[k], &factors);
+                for other in &phi[..=k] {
+                    add(&mut sums.with_products[pair], phi[k] * other, &products);
+                    pair += 1;
+                }
+            }
+        }
+        sums
+    }
+
+    /// A vector with two entries for each function: those at two positions of [`Self::with_functions`].
+    fn vector(&self, count: usize, positions: [usize; 2]) -> DVector<f64> {
+        DVector::from_fn(2 * count, |row, _| {
+            self.with_functions[row / 2][positions[row % 2]]
+        })
+    }
+
+    /// A matrix with two rows and columns for each function: those at two by two positions of [`Self::with_products`].
+    fn matrix(&self, count: usize, positions: [[usize; 2]; 2]) -> DMatrix<f64> {
+        DMatrix::from_fn(2 * count, 2 * count, |row, column| {
+            let (k, l) = ((row / 2).max(column / 2), (row / 2).min(column / 2));
+            self.with_products[k * (k + 1) / 2 + l][positions[row % 2][column % 2]]
+        })
+    }
+}
+
+#[inline]
+fn add(sums: &mut [f64; 8], factor: f64, values: &[f64; 8]) {
+    for (sum, value) in sums.iter_mut().zip(values) {
+        *sum += factor * value;
+    }
+}
+
 impl Matrices {
     pub fn new(
         pixels: &[Pixel],
@@ -34,49 +97,30 @@ impl Matrices {
         overlap: f64,
         noise: &Noise,
     ) -> Option<Self> {
-        let size = 2 * count;
-        let (scale, number) = (1.0 / half, pixels.len() as f64);
-        let mut step = DMatrix::zeros(size, size);
-        let mut spread = DMatrix::zeros(size, size);
-        let mut shapes: DMatrix<f64> = DMatrix::zeros(count, count);
-        let [mut sum, mut weighted, mut slopes, mut slopes_weighted] =
-            [(); 4].map(|()| DVector::zeros(size));
-        let (mut value, mut square) = (0.0, 0.0);
-        let values = pixels.iter().map(|pixel| f64::from(pixel.value));
-        let mean = values.sum::<f64>() / number;
-        for pixel in pixels {
-            let phi = functions(f64::from(pixel.x) * scale, f64::from(pixel.y) * scale);
-            let smooth = pixel.smooth.map(f64::from);
-            let slope = pixel.slope.map(f64::from);
-            let intensity = f64::from(pixel.value);
-            value += intensity;
-            square += intensity * intensity;
-            for k in 0..count {
-                for axis in [0, 1] {
-                    let (row, j, s) = (2 * k + axis, smooth[axis] * phi[k], slope[axis] * phi[k]);
-                    sum[row] += j;
-                    weighted[row] += j * (intensity - mean);
-                    slopes[row] += s;
-                    slopes_weighted[row] += s * (intensity - mean);
-                }
-                for l in 0..count {
-                    let product = phi[k] * phi[l];
-                    shapes[(k, l)] += product;
-                    for (a, b) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
-                        step[(2 * k + a, 2 * l + b)] += product * smooth[a] * slope[b];
-                        spread[(2 * k + a, 2 * l + b)] += product * smooth[a] * smooth[b];
-                    }
-                }
-            }
-        }
-        let variation = square - number * mean * mean;
-        if variation <= 0.0 {
+        let number = pixels.len() as f64;
+        let values = || pixels.iter().map(|pixel| f64::from(pixel.value));
+        let value = values().sum::<f64>();
+        let mean = value / number;
+        let sums = Sums::new(pixels, mean, half, count);
+        if sums.variation <= 0.0 {
             return None;
         }
+        let [sum, slopes] = [[0, 1], [2, 3]].map(|at| sums.vector(count, at));
+        let [weighted, slopes_weighted] = [[4, 5], [6, 7]].map(|at| sums.vector(count, at));
+        let variation = sums.variation;
+        let mut step = sums.matrix(count, [[0, 1], [2, 3]]);
         step -= &sum * slopes.transpose() / number
             + &weighted * slopes_weighted.transpose() / variation;
+        let mut spread = sums.matrix(count, [[4, 5], [5, 6]]);
         spread -= &sum * sum.transpose() / number + &weighted * weighted.transpose() / variation;
-        take_noise(&mut step, &shapes, noise.variance(mean) * overlap);
+        // What the noise alone contributes to Σ ĝ·g φφᵀ, to both components alike.
+        let of_noise = noise.variance(mean) * overlap;
+        let shapes = sums.matrix(count, [[7, 7], [7, 7]]);
+        for (row, column) in (0..2 * count).flat_map(|row| (0..2 * count).map(move |c| (row, c))) {
+            if row % 2 == column % 2 {
+                step[(row, column)] -= of_noise * shapes[(row, column)];
+            }
+        }
         let step = 0.5 * (&step + step.transpose());
         Some(Self {
             step: Cholesky::new(step)?,
@@ -84,16 +128,7 @@ impl Matrices {
             sum,
             weighted,
             value,
-            square,
+            square: values().map(|value| value * value).sum(),
         })
-    }
-}
-
-/// Takes what the noise alone contributes to Σ ĝ·g φφᵀ out of both components.
-fn take_noise(step: &mut DMatrix<f64>, shapes: &DMatrix<f64>, of_noise: f64) {
-    for (k, l) in (0..shapes.nrows()).flat_map(|k| (0..shapes.ncols()).map(move |l| (k, l))) {
-        for axis in [0, 1] {
-            step[(2 * k + axis, 2 * l + axis)] -= of_noise * shapes[(k, l)];
-        }
     }
 }

@@ -11,7 +11,7 @@
 use rayon::prelude::*;
 
 use super::grey::GreyImage;
-use super::speckle::{patch_steps, speckle};
+use super::speckle::PatchLayout;
 use super::spline::Spline;
 use super::state::Tracked;
 use super::subset::Subset;
@@ -23,38 +23,19 @@ use super::warp::Warp;
 const PRECISE: f64 = 1.0 / 32.0;
 
 /// The patches of a first image.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 pub struct Patches<'a> {
     tracker: &'a Tracker,
-    width: usize,
-    speckle: f64,
-    /// The points of the grid at which there is a patch.
-    points: Vec<usize>,
+    layout: &'a PatchLayout,
 }
 
 impl Tracker {
     /// Patches that are wide enough for the noise of the images.
     pub fn patches(&self) -> Patches<'_> {
-        let speckle = speckle(&self.reference, &self.noise);
-        let steps = patch_steps(
-            &self.reference,
-            &self.grid,
-            self.spacing,
-            &self.noise,
-            speckle,
-        );
-        let points = &self.grid.points;
-        let first = [0, 1].map(|axis| points.iter().map(|point| point[axis]).min().unwrap_or(0));
-        let width = steps * self.spacing;
-        let is_on_lattice = |point: &[usize; 2]| {
-            (0..2).all(|axis| (point[axis] - first[axis]).is_multiple_of(width))
-        };
-        let points = (0..points.len()).filter(|number| is_on_lattice(&points[*number]));
+        let layout = || PatchLayout::new(&self.reference, &self.grid, self.spacing, &self.noise);
         Patches {
             tracker: self,
-            width,
-            speckle,
-            points: points.collect(),
+            layout: self.patch_layout.get_or_init(layout),
         }
     }
 }
@@ -62,7 +43,7 @@ impl Tracker {
 impl Patches<'_> {
     /// Width of a patch in pixels.
     pub fn width(&self) -> usize {
-        self.width
+        self.layout.width
     }
 
     /// Whether the noise moves most patches by so little that each leads to its displacement by itself.
@@ -72,15 +53,21 @@ impl Patches<'_> {
         } = self.tracker;
         let is_precise = |number: &usize| {
             let point = self.tracker.grid.points[*number];
-            let patch = Subset::patch(reference, point, self.width, noise);
+            let patch = Subset::patch(reference, point, self.layout.width, noise);
             patch.is_some_and(|patch| self.is_precise(&patch))
         };
-        let precise = self.points.par_iter().copied().filter(is_precise).count();
-        2 * precise > self.points.len()
+        let precise = self
+            .layout
+            .points
+            .par_iter()
+            .copied()
+            .filter(is_precise)
+            .count();
+        2 * precise > self.layout.points.len()
     }
 
     fn is_precise(&self, patch: &Subset) -> bool {
-        patch.expected_deviation() < PRECISE * self.speckle
+        patch.expected_deviation() < PRECISE * self.layout.speckle
     }
 
     /// A later image as it is measured in.
@@ -95,13 +82,13 @@ impl Patches<'_> {
         spline: &Spline,
         about: &(dyn Fn(usize) -> Option<Warp> + Sync),
     ) -> Vec<Option<Tracked>> {
-        let measured = self.points.par_iter().map(|&number| {
+        let measured = self.layout.points.par_iter().map(|&number| {
             let guess = about(number)?;
             self.measure_one(spline, self.tracker.grid.points[number], guess)
         });
         let measured: Vec<Option<Tracked>> = measured.collect();
         let mut all = vec![None; self.tracker.grid.points.len()];
-        for (number, one) in self.points.iter().zip(measured) {
+        for (number, one) in self.layout.points.iter().zip(measured) {
             all[*number] = one;
         }
         all
@@ -111,7 +98,7 @@ impl Patches<'_> {
         let Tracker {
             reference, noise, ..
         } = self.tracker;
-        let patch = Subset::patch(reference, point, self.width, noise)?;
+        let patch = Subset::patch(reference, point, self.layout.width, noise)?;
         let middle = patch.middle();
         let fit = if self.is_precise(&patch) {
             patch.find(spline, guess, noise)?

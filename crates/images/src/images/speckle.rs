@@ -30,9 +30,40 @@ pub fn half_width(reference: &Reference, grid: &Grid, order: Order, noise: &Nois
     half
 }
 
+/// Where patches are that share no pixel.
+#[derive(Clone, Debug)]
+pub struct PatchLayout {
+    /// Width of a patch in pixels.
+    pub width: usize,
+    /// Width of a speckle in pixels.
+    pub speckle: f64,
+    /// The points of the grid at which there is a patch.
+    pub points: Vec<usize>,
+}
+
+impl PatchLayout {
+    /// Patches that are wide enough for the noise, on a grid of a spacing.
+    pub fn new(reference: &Reference, grid: &Grid, spacing: usize, noise: &Noise) -> Self {
+        let speckle = speckle(reference, noise);
+        let width = spacing * patch_steps(reference, grid, spacing, noise, speckle);
+        let first = [0, 1].map(|axis| grid.points.iter().map(|point| point[axis]).min());
+        let is_on_lattice = |point: &[usize; 2]| {
+            (0..2).all(|axis| (point[axis] - first[axis].unwrap_or(0)).is_multiple_of(width))
+        };
+        let numbers = 0..grid.points.len();
+        Self {
+            width,
+            speckle,
+            points: numbers
+                .filter(|number| is_on_lattice(&grid.points[*number]))
+                .collect(),
+        }
+    }
+}
+
 /// How many steps of the grid wide patches are that share no pixel: three speckles, and wide enough that the noise moves a quarter of them by
 /// less than an eighth of a speckle, for which the images are linear; at most an eighth of the image.
-pub fn patch_steps(
+fn patch_steps(
     reference: &Reference,
     grid: &Grid,
     spacing: usize,
@@ -73,7 +104,7 @@ fn typical(grid: &Grid, subset: &(dyn Fn([usize; 2]) -> Option<Subset> + Sync)) 
 
 /// The width at half height of the autocorrelation of the pattern, the mean of both directions, in pixels; light and dark areas that
 /// are much larger than a speckle do not count.
-pub fn speckle(reference: &Reference, noise: &Noise) -> f64 {
+fn speckle(reference: &Reference, noise: &Noise) -> f64 {
     const MOST: usize = 40;
     /// Standard deviation in pixels of what counts as an area.
     const AREA: f64 = 16.0;

@@ -8,12 +8,14 @@ use super::grid::{Follower, Grid};
 use super::noise::{Classes, Noise};
 use super::region::Region;
 use super::seed::Pyramid;
-use super::speckle::half_width;
+use super::speckle::{PatchLayout, half_width};
 use super::spline::Spline;
 use super::state::{State, Tracked};
 use super::subset::{Match, Subset};
 use super::warp::Order;
 use crate::error::{Diagnostic, Error};
+
+use std::sync::OnceLock;
 
 use rayon::prelude::*;
 
@@ -55,7 +57,11 @@ pub struct Tracker {
     pub(super) spacing: usize,
     pub(super) before: Option<(GreyImage, Vec<Option<State>>)>,
     pub(super) warnings: Vec<Diagnostic>,
+    pub(super) patch_layout: OnceLock<PatchLayout>,
 }
+
+/// Of so many points one starts from its field in the image before.
+const SAMPLED: usize = 16;
 
 /// The most seeds of separate parts of a specimen.
 const MOST_SEEDS: usize = 12;
@@ -118,6 +124,7 @@ impl Tracker {
             spacing: settings.spacing.max(1),
             before: None,
             warnings,
+            patch_layout: OnceLock::new(),
         })
     }
 
@@ -214,14 +221,20 @@ impl Tracker {
         let mut matches: Vec<Option<Match>> = vec![None; self.centres.len()];
         let mut attempts = vec![0; matches.len()];
         if let Some((_, states)) = &self.before {
-            let guesses = states
-                .iter()
-                .enumerate()
-                .filter_map(|(point, state)| Some((point, state.as_ref()?.warp)));
-            for (point, one) in follower.find_all(spline, guesses.collect()) {
-                matches[point] = one;
+            // The fields of the image before are far from this one's where the step is large: a few points find it, and lead to their neighbours.
+            for every in [SAMPLED, 1] {
+                let unreached = |point: &usize| matches[*point].is_none() && attempts[*point] == 0;
+                let points = (0..states.len()).step_by(every).filter(unreached);
+                let guesses =
+                    points.filter_map(|point| Some((point, states[point].as_ref()?.warp)));
+                for (point, one) in follower.find_all(spline, guesses.collect()) {
+                    matches[point] = one;
+                }
+                if matches.iter().all(Option::is_none) {
+                    break;
+                }
+                follower.spread(spline, &mut matches, &mut attempts);
             }
-            follower.spread(spline, &mut matches, &mut attempts);
         }
         if self.before.is_none() || matches.iter().all(Option::is_none) {
             self.seed(&follower, (image, spline), &mut matches, &mut attempts);
@@ -302,6 +315,7 @@ impl Tracker {
         let classes = parts.iter().fold(empty, Classes::join);
         if let Some(noise) = classes.noise() {
             self.noise = noise;
+            self.patch_layout = OnceLock::new();
             let reference = &self.reference;
             self.reference =
                 Reference::new(reference.image.clone(), reference.usable.clone(), &noise);
