@@ -25,7 +25,9 @@
 
 use crate::error::Error;
 use crate::markers::Marker;
+use equations::Equations;
 use input::{Task, observe};
+use search::MOST_STEPS;
 
 mod edges;
 mod equations;
@@ -95,6 +97,35 @@ pub fn estimate(
         }
         estimate => estimate,
     }
+}
+
+/// The nearest field and the residuals of its markers alone, as a start of something else: without verdict, intervals and stresses. Edges without
+/// a stated condition are loaded, or may be freed by the data, which takes many times longer.
+///
+/// # Errors
+/// As [`estimate`].
+pub fn nearest_field(
+    specimen: &Specimen,
+    markers: &[Marker],
+    knowledge: &Knowledge,
+    may_free_edges: bool,
+) -> Result<FieldEstimate, Error> {
+    let (edges, observations) = observe(specimen.mesh, markers, knowledge)?;
+    let task = Task {
+        specimen: specimen.clone(),
+        observations: &observations,
+        knowledge,
+    };
+    let nearest = if may_free_edges {
+        free_edges::search(&task, edges)?.0
+    } else {
+        Equations::new(&task, &edges)?.run(MOST_STEPS)?
+    };
+    Ok(FieldEstimate {
+        markers: nearest.markers(None),
+        displacement: nearest.field,
+        ..FieldEstimate::default()
+    })
 }
 
 fn estimate_with(

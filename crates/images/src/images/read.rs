@@ -13,15 +13,15 @@ use tiff::decoder::{Decoder, DecodingResult};
 use super::grey::GreyImage;
 use crate::error::Error;
 use gelbench_base::document::given;
+use palette::{is_of_palette, numbers};
+
+mod palette;
 
 /// Pixels of the largest image that is read.
 const MOST_PIXELS: u64 = 1 << 27;
 
 /// Pixels along the shorter side of the smallest image that is of use.
 const FEWEST: u32 = 8;
-
-/// Weights of red, green and blue in the luminance (ITU-R BT.709).
-const LUMINANCE: [f32; 3] = [0.2126, 0.7152, 0.0722];
 
 /// The ends of names of files that are images.
 const ENDS: [&str; 6] = ["png", "tif", "tiff", "bmp", "jpg", "jpeg"];
@@ -317,12 +317,15 @@ fn of_other<R: BufRead + Seek>(open: impl Fn() -> Result<R, Error>) -> Result<Gr
     Ok(GreyImage::new(width, height, values))
 }
 
+/// The luminance of red, green and blue (ITU-R BT.709).
+fn luminance([r, g, b]: [f32; 3]) -> f32 {
+    0.2126 * r + 0.7152 * g + 0.0722 * b
+}
+
 /// Grey values of pixels with so many samples: the first one, or the luminance of three or more.
 fn greys<T: Copy + Sync>(samples: &[T], each: usize, value: impl Fn(T) -> f32 + Sync) -> Vec<f32> {
     let grey = |pixel: &[T]| match pixel {
-        [r, g, b, ..] => {
-            LUMINANCE[0] * value(*r) + LUMINANCE[1] * value(*g) + LUMINANCE[2] * value(*b)
-        }
+        [r, g, b, ..] => luminance([*r, *g, *b].map(&value)),
         _ => value(pixel[0]),
     };
     samples.par_chunks_exact(each).map(grey).collect()
@@ -331,17 +334,34 @@ fn greys<T: Copy + Sync>(samples: &[T], each: usize, value: impl Fn(T) -> f32 + 
 fn of_tiff<R: std::io::Read + Seek>(mut decoder: Decoder<R>) -> Result<GreyImage, String> {
     let (width, height) = decoder.dimensions().map_err(|fault| fault.to_string())?;
     check_size(width, height)?;
-    let each = match decoder.colortype().map_err(|fault| fault.to_string())? {
-        ColorType::Gray(_) => 1,
-        ColorType::GrayA(_) => 2,
-        ColorType::RGB(_) => 3,
-        ColorType::RGBA(_) => 4,
-        other => {
-            return Err(format!(
-                "its colours are {other:?}, where grey or RGB is expected"
-            ));
+    match decoder.colortype() {
+        Ok(ColorType::Gray(_)) => of_samples(decoder, 1),
+        Ok(ColorType::GrayA(_)) => of_samples(decoder, 2),
+        Ok(ColorType::RGB(_)) => of_samples(decoder, 3),
+        Ok(ColorType::RGBA(_)) => of_samples(decoder, 4),
+        Ok(other) => Err(format!(
+            "its colours are {other:?}, where grey or RGB is expected"
+        )),
+        Err(fault) if is_of_palette(&fault) => {
+            let (decoder, greys) = numbers(&mut decoder)?;
+            let mut image = of_samples(decoder, 1)?;
+            let grey = |value: f32| greys.get(value as usize).copied().unwrap_or_default();
+            image
+                .values_mut()
+                .iter_mut()
+                .for_each(|value| *value = grey(*value));
+            Ok(image)
         }
-    };
+        Err(fault) => Err(fault.to_string()),
+    }
+}
+
+/// An image of pixels of so many samples each.
+fn of_samples<R: std::io::Read + Seek>(
+    mut decoder: Decoder<R>,
+    each: usize,
+) -> Result<GreyImage, String> {
+    let (width, height) = decoder.dimensions().map_err(|fault| fault.to_string())?;
     let values = match decoder.read_image().map_err(|fault| fault.to_string())? {
         DecodingResult::U8(samples) => greys(&samples, each, f32::from),
         DecodingResult::U16(samples) => greys(&samples, each, f32::from),

@@ -10,6 +10,9 @@ pub struct Region {
     inside: Vec<bool>,
 }
 
+/// The largest part of a mask's pixels that are neither white nor black, as along its edges.
+const MOST_GREY: f64 = 0.2;
+
 impl Region {
     /// The whole image.
     pub fn full(size: [usize; 2]) -> Self {
@@ -22,7 +25,7 @@ impl Region {
     /// The pixels of a mask that are lighter than half of its range.
     ///
     /// # Errors
-    /// [`Error::Input`] where its size is not that of the images, or where all pixels are alike.
+    /// [`Error::Input`] where its size is not that of the images, or where it is not of two colours.
     pub fn of_mask(mask: &GreyImage, size: [usize; 2]) -> Result<Self, Error> {
         if mask.size() != size {
             let ([a, b], [c, d]) = (mask.size(), size);
@@ -33,8 +36,16 @@ impl Region {
         let (low, high) = values.fold((f32::MAX, f32::MIN), |(low, high), value| {
             (low.min(*value), high.max(*value))
         });
-        if low >= high {
-            let message = "all pixels of the mask are alike";
+        let is_grey = |value: &&f32| (0.1..0.9).contains(&((**value - low) / (high - low)));
+        let grey = mask.values().iter().filter(is_grey).count() as f64;
+        let fault = if low >= high {
+            Some("all pixels of the mask are alike")
+        } else if grey > MOST_GREY * mask.values().len() as f64 {
+            Some("the mask is a photograph: many of its pixels are grey")
+        } else {
+            None
+        };
+        if let Some(message) = fault {
             return Err(Error::input(message, "draw the specimen white on black"));
         }
         let inside = mask

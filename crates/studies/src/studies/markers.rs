@@ -13,7 +13,7 @@ use rayon::prelude::*;
 use crate::error::{Diagnostic, Error};
 use crate::estimation::{
     Answer, FieldEstimate, Knowledge, Reason, RegressedLaw, UncertainLaw, estimate, name_parts,
-    transfer,
+    nearest_field, transfer,
 };
 use crate::markers::{Frame, MarkerSeries, Understood, check_thickness, place_on};
 use crate::material::{Card, PlaneState};
@@ -296,14 +296,7 @@ impl MarkerStudy {
     /// # Errors
     /// As [`estimate`], with the frame in its message.
     pub fn estimate_frame(&self, frame: &Frame) -> Result<FieldEstimate, Error> {
-        let specimen = self.specimen();
-        let law = self.regressed.as_ref();
-        let knowledge = Knowledge {
-            edge_gap: self.unknown_gap,
-            edge_accuracy: self.edge_accuracy,
-            uncertain_law: UncertainLaw::of_card(&self.card),
-            ..self.conditions.knowledge(frame.number, law)
-        };
+        let (specimen, knowledge) = (self.specimen(), self.knowledge(frame));
         let estimate = match &self.coarse {
             None => self.weighted(&frame.markers, knowledge, &|knowledge| {
                 estimate(&specimen, &frame.markers, knowledge)
@@ -316,6 +309,25 @@ impl MarkerStudy {
         };
         let estimate = estimate.map(|estimate| self.with_unknown_edge(estimate));
         estimate.map_err(|error| of_one_frame(error, frame.number, self.series.frames.len()))
+    }
+
+    /// As [`nearest_field`] for a frame: the displacements of the nodes.
+    fn nearest_displacement(&self, frame: &Frame, may_free_edges: bool) -> Result<Vec<f64>, Error> {
+        let specimen = self.specimen();
+        let nearest = self.weighted(&frame.markers, self.knowledge(frame), &|knowledge| {
+            nearest_field(&specimen, &frame.markers, knowledge, may_free_edges)
+        });
+        Ok(nearest?.displacement)
+    }
+
+    fn knowledge(&self, frame: &Frame) -> Knowledge {
+        let law = self.regressed.as_ref();
+        Knowledge {
+            edge_gap: self.unknown_gap,
+            edge_accuracy: self.edge_accuracy,
+            uncertain_law: UncertainLaw::of_card(&self.card),
+            ..self.conditions.knowledge(frame.number, law)
+        }
     }
 }
 

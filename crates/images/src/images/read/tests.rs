@@ -81,3 +81,25 @@ fn what_is_no_image_is_refused_with_its_name() {
     }
     assert!(check_size(100_000, 100_000).is_err() && check_size(4, 100).is_err());
 }
+
+/// As the camera images of the DIC Challenge: pixels are numbers of colours.
+#[test]
+fn pixels_that_are_numbers_of_colours_are_read_as_these_colours() {
+    use tiff::encoder::{TiffEncoder, colortype::Gray8};
+    use tiff::tags::Tag;
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("palette.tif");
+    let mut encoder = TiffEncoder::new(File::create(&path).unwrap()).unwrap();
+    encoder.write_image::<Gray8>(10, 10, &[7; 100]).unwrap();
+    let mut image = encoder.new_image::<Gray8>(10, 10).unwrap();
+    let colours: Vec<u16> = (0..3 * 256).map(|k| 257 * (255 - k % 256)).collect();
+    let directory = image.encoder();
+    directory
+        .write_tag(Tag::PhotometricInterpretation, 3_u16)
+        .unwrap();
+    directory.write_tag(Tag::ColorMap, &colours[..]).unwrap();
+    image.write_data(&(0..100).collect::<Vec<u8>>()).unwrap();
+    let all = pages(&path).unwrap();
+    let value = |page: usize| all[page].read().unwrap().value(3, 2);
+    assert_eq!([value(0), value(1).round()], [7.0, 232.0]);
+}

@@ -54,9 +54,10 @@ impl MarkerStudy {
         let misfit = ImageMisfit {
             images: &images,
             patches: images.tracker.patches(),
+            are_precise: images.tracker.patches().are_precise(),
             study: &self,
         };
-        let measured: Vec<Option<Measured>> = if misfit.patches.are_precise() {
+        let measured: Vec<Option<Measured>> = if misfit.are_precise {
             let frames = self.series.frames.par_iter();
             frames.map(|frame| misfit.about_tracked(frame)).collect()
         } else {
@@ -95,6 +96,7 @@ fn accuracy(pixel: f64, is_mask: bool) -> (f64, String) {
 struct ImageMisfit<'a> {
     images: &'a TrackedImages,
     patches: Patches<'a>,
+    are_precise: bool,
     study: &'a MarkerStudy,
 }
 
@@ -115,8 +117,14 @@ impl ImageMisfit<'_> {
     }
 
     fn about_tracked(&self, frame: &Frame) -> Option<Measured> {
-        let start = self.study.estimate_frame(frame).ok()?;
-        self.settled(frame, start.displacement)
+        let start = self.nearest_displacement(frame)?;
+        self.settled(frame, start)
+    }
+
+    /// Patches that lead to their displacements by themselves take their gradient alone from the field.
+    fn nearest_displacement(&self, frame: &Frame) -> Option<Vec<f64>> {
+        let may_free_edges = !self.are_precise;
+        self.study.nearest_displacement(frame, may_free_edges).ok()
     }
 
     /// The patches about a field, about the field that is nearest to these, and so on until they stay.
@@ -137,7 +145,7 @@ impl ImageMisfit<'_> {
             if is_last {
                 break;
             }
-            displacement = self.study.estimate_frame(&frame).ok()?.displacement;
+            displacement = self.nearest_displacement(&frame)?;
         }
         Some(Measured {
             markers: frame.markers,
