@@ -187,7 +187,7 @@ pub fn correct(
         let start = Instant::now();
         let mut study = with_files(options.in_memory, || match options.refine {
             true => MarkerStudy::prepare_refined(card, request, &|what| watch.tell(what)),
-            false => MarkerStudy::prepare_with(card, request),
+            false => MarkerStudy::prepare_with(card, request, &|what| watch.tell(what)),
         })?;
         let tell = |frame: &Frame| watch.tell(&format!("frame {}", frame.number));
         let estimates = study.estimate(&tell)?;

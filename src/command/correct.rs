@@ -64,11 +64,13 @@ fn each_frame(options: Options, job: Job) -> Outcome {
 }
 
 fn prepared(options: Options) -> Result<MarkerStudy, Error> {
-    if !options.refine {
-        return MarkerStudy::prepare(request(options)?);
-    }
+    let refined = options.refine;
     let request = request(options)?;
     let progress = Progress::of(0);
+    let watch = |action: &str| progress.tell(action);
+    if !refined {
+        return MarkerStudy::prepare(request, &watch);
+    }
     let card = Card::load(&request.material, Path::new("."))?;
-    MarkerStudy::prepare_refined(card, request, &|action| progress.tell(action))
+    MarkerStudy::prepare_refined(card, request, &watch)
 }

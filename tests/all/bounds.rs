@@ -122,7 +122,7 @@ fn more_markers_than_memory_holds_are_refused_with_estimate_and_remedy() {
                 ..Budget::USUAL
             },
         };
-        MarkerStudy::prepare(request)
+        MarkerStudy::prepare(request, &|_| ())
             .err()
             .map(|fault| fault.to_string())
     };

@@ -259,7 +259,7 @@ fn corrected_within(
         forces: None,
         budget: Budget::USUAL,
     };
-    let mut study = MarkerStudy::prepare(request).unwrap();
+    let mut study = MarkerStudy::prepare(request, &|_| ()).unwrap();
     let estimate = study.estimate(&|_| ()).unwrap().remove(0);
     (study, estimate)
 }

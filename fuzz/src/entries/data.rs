@@ -49,7 +49,7 @@ pub fn correct(bytes: &[u8]) -> Became {
     let (text, mut choices) = table(bytes, markers);
     with_file("markers.csv", text.as_bytes(), |file| {
         let request = request(file.to_owned(), &mut choices);
-        let field = MarkerStudy::prepare(request);
+        let field = MarkerStudy::prepare(request, &|_| ());
         let result = field.and_then(|mut field| Ok((field.estimate(&|_| ())?, field)));
         match result {
             Ok((estimates, field)) => {

@@ -160,5 +160,5 @@ fn of_file(file: &Path, like: &Request, inputs: &mut Vec<PathBuf>) -> Result<Nam
 /// A specimen whose parameters are those of all specimens.
 fn prepared(mut request: Request) -> Result<MarkerStudy, Error> {
     request.conditions.fit.clear();
-    MarkerStudy::prepare(request)
+    MarkerStudy::prepare(request, &|_| ())
 }

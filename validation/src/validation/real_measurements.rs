@@ -94,7 +94,7 @@ impl MeasuredField {
 
     /// The numbers of the frames and their estimates.
     fn estimate(&self) -> Result<Estimated, Error> {
-        let mut study = MarkerStudy::prepare(self.request.clone())?;
+        let mut study = MarkerStudy::prepare(self.request.clone(), &|_| ())?;
         let estimates = study.estimate(&|_| ())?;
         let frames = study.series.frames.iter();
         let frames = frames.map(|frame| (frame.number, frame.markers.len()));

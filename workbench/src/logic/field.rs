@@ -152,7 +152,7 @@ fn with_files_of<T>(question: &FieldQuestion, work: impl FnOnce() -> T) -> T {
 
 fn answer(question: &FieldQuestion) -> Result<FieldAnswer, Error> {
     let begun = Instant::now();
-    let mut study = MarkerStudy::prepare(request(question)?)?;
+    let mut study = MarkerStudy::prepare(request(question)?, &|_| ())?;
     let photos = Photos::of(question)?;
     let preview = Preview {
         photo: photos.at_rest()?,
@@ -210,7 +210,7 @@ fn results(
 pub fn files(question: &FieldQuestion) -> Result<Vec<NamedFile>, Error> {
     with_files_of(question, || {
         let begun = Instant::now();
-        let mut study = MarkerStudy::prepare(request(question)?)?;
+        let mut study = MarkerStudy::prepare(request(question)?, &|_| ())?;
         let estimates = study.estimate(&|_| ())?;
         let mut files: Vec<NamedFile> = Vec::new();
         for (frame, estimate) in study.series.frames.iter().zip(&estimates) {

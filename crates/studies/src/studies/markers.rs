@@ -124,22 +124,26 @@ fn of_reading(outline: Vec<Diagnostic>, thickness: Option<Diagnostic>) -> Vec<Fi
 }
 
 impl MarkerStudy {
-    /// Reads everything.
+    /// Reads everything; images are reported before they are followed.
     ///
     /// # Errors
     /// [`Error::Input`] with the faults and their remedies.
-    pub fn prepare(request: Request) -> Result<Self, Error> {
+    pub fn prepare(request: Request, watch: &dyn Fn(&str)) -> Result<Self, Error> {
         let card = Card::load(&request.material, Path::new("."))?;
-        Self::prepare_with(card, request)
+        Self::prepare_with(card, request, watch)
     }
 
     /// Reads everything but the material, which is that of a card such as [`Card::of_law`] makes.
     ///
     /// # Errors
     /// As [`Self::prepare`].
-    pub fn prepare_with(card: Card, mut request: Request) -> Result<Self, Error> {
+    pub fn prepare_with(
+        card: Card,
+        mut request: Request,
+        watch: &dyn Fn(&str),
+    ) -> Result<Self, Error> {
         let (card, regions) = materials::in_common_plane(card, &mut request.conditions)?;
-        let (mut field, images) = images::read_field(&request)?;
+        let (mut field, images) = images::read_field(&request, watch)?;
         let force_warnings = request
             .conditions
             .take_forces(request.forces.as_deref(), &field.series)?;
@@ -194,7 +198,10 @@ impl MarkerStudy {
             unknown_gap,
             edge_accuracy: 0.0,
         };
-        Ok(study.about_equilibrium(images, request.images.mask.is_some()))
+        let Some(images) = images else {
+            return Ok(study);
+        };
+        Ok(study.about_equilibrium(&images, request.images.mask.is_some(), watch))
     }
 
     /// The frames with their estimates.

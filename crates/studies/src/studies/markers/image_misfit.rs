@@ -34,34 +34,38 @@ struct Measured {
 }
 
 impl MarkerStudy {
-    /// With the patches of all frames measured about the fields in equilibrium that are nearest to them, where there are images.
+    /// With the patches of all frames measured about the fields in equilibrium that are nearest to them; each frame is reported before it begins.
     ///
     /// Where noise is so large that a patch alone does not lead to its displacement, neither may tracking: then each frame also starts from the
     /// field of the frame before, the first one from rest, and the field counts about which the patches are the more similar.
     pub(super) fn about_equilibrium(
         mut self,
-        images: Option<TrackedImages>,
+        images: &TrackedImages,
         is_mask: bool,
+        watch: &dyn Fn(&str),
     ) -> Self {
-        let Some(images) = images else {
-            return self;
-        };
+        let tell = |frame: &Frame| watch(&format!("patches of frame {}", frame.number));
         if self.unknown_gap.is_none() {
             let (accuracy, words) = accuracy(images.pixel, is_mask);
             self.edge_accuracy = accuracy;
             self.mesh_origin += &words;
         }
         let misfit = ImageMisfit {
-            images: &images,
+            images,
             patches: images.tracker.patches(),
             are_precise: images.tracker.patches().are_precise(),
             study: &self,
         };
         let measured: Vec<Option<Measured>> = if misfit.are_precise {
-            let frames = self.series.frames.par_iter();
-            frames.map(|frame| misfit.about_tracked(frame)).collect()
+            let together = self.series.frames.chunks(rayon::current_num_threads());
+            let measured = together.map(|frames| {
+                frames.iter().for_each(tell);
+                let frames = frames.par_iter().map(|frame| misfit.about_tracked(frame));
+                frames.collect::<Vec<_>>()
+            });
+            measured.flatten().collect()
         } else {
-            misfit.in_turn()
+            misfit.in_turn(&tell)
         };
         for (frame, measured) in self.series.frames.iter_mut().zip(measured) {
             if let Some(measured) = measured {
@@ -101,9 +105,10 @@ struct ImageMisfit<'a> {
 }
 
 impl ImageMisfit<'_> {
-    fn in_turn(&self) -> Vec<Option<Measured>> {
+    fn in_turn(&self, tell: &dyn Fn(&Frame)) -> Vec<Option<Measured>> {
         let mut before = vec![0.0; 2 * self.study.mesh.nodes.len()];
         let frames = self.study.series.frames.iter().map(|frame| {
+            tell(frame);
             let starts = [
                 self.settled(frame, before.clone()),
                 self.about_tracked(frame),

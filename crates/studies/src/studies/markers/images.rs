@@ -5,11 +5,14 @@ use crate::error::Error;
 use crate::markers::{MarkerFiles, read};
 use crate::studies::images::{ImageRequest, TrackedImages};
 
-/// The markers of files, or those of images that are followed, and these.
+/// The markers of files, or those of images that are followed, each of which is reported before it begins, and these.
 ///
 /// # Errors
 /// As of [`read`] and [`ImageRequest::follow`].
-pub fn read_field(request: &Request) -> Result<(MarkerFiles, Option<TrackedImages>), Error> {
+pub fn read_field(
+    request: &Request,
+    watch: &dyn Fn(&str),
+) -> Result<(MarkerFiles, Option<TrackedImages>), Error> {
     if !request.has_images() {
         return Ok((read(&request.files, &request.reading)?, None));
     }
@@ -23,6 +26,6 @@ pub fn read_field(request: &Request) -> Result<(MarkerFiles, Option<TrackedImage
         },
         budget: request.budget,
     };
-    let tracked = images.follow(&|_| ())?;
+    let tracked = images.follow(watch)?;
     Ok((tracked.markers(), Some(tracked)))
 }

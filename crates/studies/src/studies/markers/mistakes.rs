@@ -338,7 +338,7 @@ mod tests {
             forces: None,
             budget: Budget::USUAL,
         };
-        let mut study = MarkerStudy::prepare(request).unwrap();
+        let mut study = MarkerStudy::prepare(request, &|_| ()).unwrap();
         match study.estimate(&|_| ()) {
             Ok(estimates) => {
                 let doubt = study.mistake.map(|mistake| mistake.message);

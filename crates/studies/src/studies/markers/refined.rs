@@ -22,7 +22,7 @@ impl MarkerStudy {
         mut request: Request,
         watch: &dyn Fn(&str),
     ) -> Result<Self, Error> {
-        let mut study = Self::prepare_with(card.clone(), request.clone())?;
+        let mut study = Self::prepare_with(card.clone(), request.clone(), watch)?;
         loop {
             let Some(size) = study.cell_size else {
                 return Err(Error::input(
@@ -41,7 +41,7 @@ impl MarkerStudy {
                 let size = decimals(size, 4);
                 Err(format!("cells smaller than {size} mm are too many"))
             } else {
-                let finer = Self::prepare_with(card.clone(), request.clone());
+                let finer = Self::prepare_with(card.clone(), request.clone(), watch);
                 finer.map_err(|fault| fault.to_string())
             };
             match finer {
