@@ -89,6 +89,12 @@ impl Estimate {
         0.5 * (self.interval[1] - self.interval[0]) / normal_reach()
     }
 
+    /// Whether its interval holds a value.
+    pub fn holds(&self, value: f64) -> bool {
+        let [low, high] = self.interval;
+        (low..=high).contains(&value)
+    }
+
     /// A value without uncertainty.
     pub fn exact(value: f64) -> Self {
         Self::new(value, 0.0, 0.0)
@@ -150,6 +156,20 @@ pub fn cochran(values: &[[f64; 2]]) -> f64 {
         / weight;
     let square = |[value, variance]: &[f64; 2]| (value - mean).powi(2) / variance;
     values.iter().map(square).sum()
+}
+
+/// The corrected Akaike information criterion, −2 ln L + 2k + 2k(k + 1)/(n − k − 1), of k fitted values and n independent ones; infinite
+/// where there are too few.
+///
+/// # References
+/// C. M. Hurvich, C.-L. Tsai, Biometrika 76, 297 (1989), doi:10.1093/biomet/76.2.297
+pub fn corrected_akaike_criterion(deviance: f64, k: f64, n: f64) -> f64 {
+    let freedom = n - k - 1.0;
+    if freedom > 0.0 {
+        deviance + 2.0 * k + 2.0 * k * (k + 1.0) / freedom
+    } else {
+        f64::INFINITY
+    }
 }
 
 /// P(b ≤ x) for a number b with the beta distribution of these shapes; NaN where the shapes are invalid.

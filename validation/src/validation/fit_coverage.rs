@@ -161,10 +161,7 @@ impl Subject {
     fn trial(&self, actual: &Fit) -> Trial {
         let quality = &actual.quality;
         let truths = self.values.iter().zip(&quality.estimates);
-        let held = |(truth, estimate): (&f64, &Estimate)| {
-            let [low, high] = estimate.interval;
-            (low..=high).contains(truth)
-        };
+        let held = |(truth, estimate): (&f64, &Estimate)| estimate.holds(*truth);
         Trial {
             answer: quality
                 .verdict

@@ -15,7 +15,7 @@ use crate::document::{Bound, Section};
 use crate::error::Error;
 use crate::identification::{Function, Identification, IdentificationSettings, Sample, identify};
 use crate::results::identification_picture;
-use crate::statistics::median;
+use crate::statistics::{extremes, median};
 use crate::units::Dimension;
 
 #[derive(Clone, Copy)]
@@ -99,8 +99,7 @@ fn compute(settings: Settings, progress: Progress) -> Result<Outcome, Error> {
 /// Fixed extensions from the smallest to the largest of the exact motion.
 fn positions(settings: &Settings) -> Vec<f64> {
     let exact = settings.sample.exact().extension;
-    let low = exact.iter().copied().fold(f64::INFINITY, f64::min);
-    let high = exact.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let [low, high] = extremes(exact);
     let position = |i: usize| low + (high - low) * i as f64 / (settings.positions - 1) as f64;
     (0..settings.positions).map(position).collect()
 }
@@ -108,13 +107,13 @@ fn positions(settings: &Settings) -> Vec<f64> {
 fn compare(actual: &Identification, positions: &[f64]) -> Trial {
     let at = |function: &Function, truth: fn(f64) -> f64, x: f64| {
         let (estimate, truth) = (function.at(x), truth(x));
-        let within = |[low, high]: [f64; 2]| (low..=high).contains(&truth);
+        let [low, high] = function.band(x);
         Place {
             error: estimate.value - truth,
             standard_error: estimate.standard_error,
             truth,
-            within_interval: within(estimate.interval),
-            within_band: within(function.band(x)),
+            within_interval: estimate.holds(truth),
+            within_band: (low..=high).contains(&truth),
         }
     };
     [0, 1].map(|index| {

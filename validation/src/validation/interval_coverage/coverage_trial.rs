@@ -3,7 +3,6 @@
 use super::subject::Subject;
 use super::trial::is_away;
 use crate::estimation::{Answer, FieldEstimate};
-use crate::statistics::Estimate;
 
 /// Stresses within so many radii of the hole's centre are near it.
 const NEAR: f64 = 1.6;
@@ -41,10 +40,10 @@ impl CoverageTrial {
         trial.stresses(subject, radius, field);
         let right = field.forces.iter().find(|force| force.edge == "right");
         if let Some(right) = right {
-            trial.count(3, holds(&right.force[0], subject.truth.force));
+            trial.count(3, right.force[0].holds(subject.truth.force));
         }
         if let (Some((_, _, parameter)), Some(truth)) = (fitted.parameters.first(), truth) {
-            trial.count(4, holds(parameter, truth));
+            trial.count(4, parameter.holds(truth));
         }
         trial
     }
@@ -83,11 +82,6 @@ impl CoverageTrial {
         self.held[of][0] += usize::from(held);
         self.held[of][1] += 1;
     }
-}
-
-fn holds(estimate: &Estimate, truth: f64) -> bool {
-    let [low, high] = estimate.interval;
-    (low..=high).contains(&truth)
 }
 
 /// Shares of all seeds in %.

@@ -57,9 +57,8 @@ pub fn modulus(
             ..unknown_grips()
         };
         let (_, _, modulus) = subject.estimate(&data, &knowledge)?.parameters[0];
-        let [low, high] = modulus.interval;
         Ok(Estimate {
-            is_covered: (low..=high).contains(&truth),
+            is_covered: modulus.holds(truth),
             error_percent: 100.0 * (modulus.value / truth - 1.0).abs(),
         })
     };

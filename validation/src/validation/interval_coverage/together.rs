@@ -185,7 +185,7 @@ fn judged(frames: &[JointFrame], settings: &Settings) -> Result<Trial, Error> {
     let parameters = actual.parameters.iter().zip(&truth);
     Ok(Trial {
         held: parameters
-            .map(|(actual, truth)| (actual.interval[0]..=actual.interval[1]).contains(truth))
+            .map(|(actual, truth)| actual.holds(*truth))
             .collect(),
         predicted: [error(&actual), error(&other)],
         is_right_first: error(&actual) < error(&other)

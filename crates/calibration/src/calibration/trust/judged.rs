@@ -9,7 +9,7 @@ use crate::calibration::least_squares::{self, Residuals};
 use crate::calibration::regression::{Estimated, Misfit, Response, Row};
 use crate::calibration::settings::{SMALLEST_SHARE, Weighting};
 use crate::material::HyperelasticLaw;
-use crate::statistics::{CurveNoise, Estimate};
+use crate::statistics::{CurveNoise, Estimate, corrected_akaike_criterion};
 
 /// The size of the noise that the weights do not suit: one that is the same everywhere where they are relative, else one that is
 /// proportional to the stress.
@@ -106,16 +106,10 @@ impl Judged {
         }
     }
 
-    /// AICc of −2 ln L, n rows, and k fitted values and the variance; infinite where there are too few rows.
+    /// AICc of the rows, with the fitted values and the variance.
     pub fn aicc(&self) -> f64 {
         let fitted = self.held.iter().filter(|held| !**held).count();
-        let [n, k] = [self.rows, fitted + 1].map(|count| count as f64);
-        let freedom = n - k - 1.0;
-        if freedom > 0.0 {
-            self.surprise + 2.0 * k + 2.0 * k * (k + 1.0) / freedom
-        } else {
-            f64::INFINITY
-        }
+        corrected_akaike_criterion(self.surprise, (fitted + 1) as f64, self.rows as f64)
     }
 
     /// Whether they are noise.

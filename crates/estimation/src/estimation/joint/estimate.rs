@@ -6,7 +6,7 @@ use super::direction::Direction;
 use crate::estimation::input::{Knowledge, MeasuredForce, RegressedLaw, Specimen};
 use crate::markers::Marker;
 use crate::material::parameters::Parameter;
-use crate::statistics::{Estimate, chi_squared_limit};
+use crate::statistics::{Estimate, chi_squared_limit, corrected_akaike_criterion};
 
 /// One frame of one specimen. The law in `knowledge` is not used, nor is that of the cells that belong to no region: theirs is searched for.
 #[derive(Clone, Debug)]
@@ -122,16 +122,8 @@ pub struct ForcePrediction {
 
 impl JointEstimate {
     /// The corrected Akaike information criterion with the number of independent values; infinite where there are too few.
-    ///
-    /// # References
-    /// C. M. Hurvich, C.-L. Tsai, Biometrika 76, 297 (1989), doi:10.1093/biomet/76.2.297
     pub fn information_criterion(&self) -> f64 {
-        let (k, n) = (self.effective_parameters, self.independent);
-        if n - k - 1.0 > 0.0 {
-            self.deviance + 2.0 * k + 2.0 * k * (k + 1.0) / (n - k - 1.0)
-        } else {
-            f64::INFINITY
-        }
+        corrected_akaike_criterion(self.deviance, self.effective_parameters, self.independent)
     }
 
     /// Root mean square of the errors of predicted forces relative to that of the measured ones; `None` where none was predicted.
