@@ -8,6 +8,7 @@ use crate::document::Section;
 use crate::mesh::Mesh;
 use crate::results::Wanted;
 use crate::results::{Line, Stroke, mesh_outlines};
+use crate::solve::vector::{difference, norm};
 use crate::statistics::{larger, median};
 
 pub use crate::results::{Block, Check, Claim, Figure, Outcome, limit};
@@ -99,9 +100,29 @@ pub fn normal_numbers_of_stream(seed: u64, stream: u64) -> impl Iterator<Item = 
 
 /// Distance of two series over the size of the second, in relative L2, in %.
 pub fn percent(values: &[f64], reference: &[f64]) -> f64 {
-    let norm = |values: &mut dyn Iterator<Item = f64>| values.map(|v| v * v).sum::<f64>().sqrt();
-    let error = norm(&mut values.iter().zip(reference).map(|(u, v)| u - v));
-    100.0 * error / norm(&mut reference.iter().copied())
+    100.0 * norm(&difference(values, reference)) / norm(reference)
+}
+
+/// Squares of errors and of exact values, integrated over a sheet.
+#[derive(Default)]
+pub struct Squares {
+    error: f64,
+    size: f64,
+}
+
+impl Squares {
+    /// Adds those of some components with the area that they stand for.
+    pub fn add(&mut self, area: f64, computed: &[f64], exact: &[f64]) {
+        for (computed, exact) in computed.iter().zip(exact) {
+            self.error += area * (computed - exact).powi(2);
+            self.size += area * exact.powi(2);
+        }
+    }
+
+    /// The root of their ratio.
+    pub fn relative(&self) -> f64 {
+        (self.error / self.size).sqrt()
+    }
 }
 
 /// How much of a deviation a correction removes, in %.

@@ -17,6 +17,7 @@ use crate::corrector::Corrector;
 use crate::document::{Bound, Section};
 use crate::error::{Error, SolveFault};
 use crate::results::{Axis, LineChart, Stroke};
+use crate::solve::vector::{difference, dot};
 use crate::statistics::Estimate;
 use crate::units::Dimension;
 
@@ -189,13 +190,8 @@ fn uncorrected_stiffness(settings: &Settings) -> f64 {
     let data = settings.disturbed(&settings.motion, settings.seed);
     let differences = settings.differences();
     let [without, with] = [0.0, 1.0].map(|k| differences.residual(&data, k));
-    let mass = with
-        .iter()
-        .zip(&without)
-        .map(|(with, without)| with - without);
-    let mass: Vec<f64> = mass.collect();
-    let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    -product(&mass, &without) / product(&mass, &mass)
+    let mass = difference(&with, &without);
+    -dot(&mass, &without) / dot(&mass, &mass)
 }
 
 /// What the estimates of one constant over all seeds come to.
@@ -218,10 +214,7 @@ impl Regressed {
             .iter()
             .map(|estimate| (estimate.value - mean).powi(2));
         let variance = squares.sum::<f64>() / (estimates.len() as f64 - 1.0);
-        let covered = estimates.iter().map(|estimate| {
-            let [low, high] = estimate.interval;
-            (low..=high).contains(&truth)
-        });
+        let covered = estimates.iter().map(|estimate| estimate.holds(truth));
         Self {
             name: name.to_owned(),
             truth,

@@ -4,6 +4,7 @@ use super::truth::{Markers, Truth};
 use crate::estimation::FieldEstimate;
 use crate::markers::Marker;
 use crate::mesh::Mesh;
+use crate::validation::case::Squares;
 
 /// Markers of one kind, and how many of them were taken for gross errors.
 #[derive(Clone, Copy, Debug, Default)]
@@ -39,24 +40,6 @@ pub struct Trial {
 
 /// Corners are singular: nothing is compared within a fifth of the width.
 const AWAY: f64 = 0.2;
-
-/// Squared errors and squared values, summed over an area.
-#[derive(Default)]
-struct Squares {
-    error: f64,
-    size: f64,
-}
-
-impl Squares {
-    fn add(&mut self, weight: f64, computed: f64, exact: f64) {
-        self.error += weight * (exact - computed).powi(2);
-        self.size += weight * exact.powi(2);
-    }
-
-    fn percent(&self) -> f64 {
-        100.0 * (self.error / self.size).sqrt()
-    }
-}
 
 impl Trial {
     /// Compares an estimate on `mesh` with the truth.
@@ -113,15 +96,15 @@ impl Trial {
                 continue;
             };
             let (_, size) = mesh.gradients(cell, mesh.shape(cell).centre());
-            let stress = estimate.first_piola_kirchhoff_stress.iter();
+            let stress = &estimate.first_piola_kirchhoff_stress;
+            squares.add(size, stress, &exact);
             for ((exact, stress), error) in exact.iter().zip(stress).zip(&estimate.stress_error) {
-                squares.add(size, *stress, *exact);
                 let is_inside = (exact - stress).abs() <= field.reach * error;
                 covered += f64::from(u8::from(is_inside));
                 count += 1.0;
             }
         }
-        self.stress = squares.percent();
+        self.stress = 100.0 * squares.relative();
         self.stress_cover = 100.0 * covered / count;
     }
 }
@@ -160,11 +143,9 @@ fn differences(truth: &Truth, data: &Markers) -> f64 {
             continue;
         };
         let raw = truth.stress_of(square.gradient()).unwrap_or([0.0; 4]);
-        for (exact, raw) in exact.iter().zip(raw) {
-            squares.add(1.0, raw, *exact);
-        }
+        squares.add(1.0, &raw, &exact);
     }
-    squares.percent()
+    100.0 * squares.relative()
 }
 
 /// Four neighbouring markers: lower left and right, upper left and right.
