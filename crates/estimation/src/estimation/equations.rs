@@ -10,7 +10,7 @@ use super::regression::{Robust, Roughness};
 use crate::error::{Error, SolveFault};
 use crate::material::HyperelasticLaw;
 use crate::problem::sheet_energy::SheetEnergy;
-use crate::solve::vector::largest;
+use crate::solve::vector::{add_scaled, largest};
 use crate::solve::{Assembly, Convergence, Inadmissible, Newton, NewtonSettings, Potential, Sum};
 
 mod approach;
@@ -185,10 +185,7 @@ impl<'a> Equations<'a> {
             let Some(factor) = (normal + diagonal).cholesky() else {
                 break;
             };
-            let step = factor.solve(&target);
-            p.iter_mut()
-                .zip(step.iter())
-                .for_each(|(p, step)| *p += step);
+            add_scaled(&mut p, 1.0, factor.solve(&target).as_slice());
         }
         p
     }

@@ -9,7 +9,7 @@ use super::input::Observations;
 use super::mesh_error::MeshError;
 use super::regression::{Fit, Regression, Undetermined, VarianceComponents};
 use crate::error::{Error, SolveFault};
-use crate::solve::vector::largest;
+use crate::solve::vector::{add_scaled, largest, moved};
 
 /// Steps allowed.
 pub const MOST_STEPS: usize = 100;
@@ -216,8 +216,7 @@ impl<'a> Equations<'a> {
         settled: bool,
         linear: &'b Linear,
     ) -> Regression<'b> {
-        let ahead = state.field.iter().zip(&linear.still);
-        let ahead: Vec<f64> = ahead.map(|(u, still)| u + still).collect();
+        let ahead = moved(&state.field, 1.0, &linear.still);
         let observations = self.task.observations;
         Regression {
             design: &linear.design,
@@ -276,10 +275,8 @@ impl<'a> Equations<'a> {
         let mut length = longest.min(most);
         loop {
             let mut next = state.clone();
-            let parameters = next.parameters.iter_mut().zip(step);
-            parameters.for_each(|(p, step)| *p += length * step);
-            let field = next.field.iter_mut().zip(change);
-            field.for_each(|(u, change)| *u += length * change);
+            add_scaled(&mut next.parameters, length, step);
+            add_scaled(&mut next.field, length, change);
             match self.balance(&mut next) {
                 Ok(()) => {
                     *state = next;
@@ -308,9 +305,7 @@ fn next_share(share: f64, ratio: f64) -> f64 {
 fn combined(still: &[f64], columns: &[Vec<f64>], step: &[f64]) -> Vec<f64> {
     let mut sum = still.to_vec();
     for (column, factor) in columns.iter().zip(step) {
-        sum.iter_mut()
-            .zip(column)
-            .for_each(|(s, c)| *s += factor * c);
+        add_scaled(&mut sum, *factor, column);
     }
     sum
 }

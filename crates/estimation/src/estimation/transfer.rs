@@ -19,6 +19,7 @@ use crate::material::sheet::{Kinematics, PlaneTensor};
 use crate::mesh::Mesh;
 use crate::problem::RigidMotion;
 use crate::problem::sheet_energy::SheetEnergy;
+use crate::solve::vector::difference;
 use crate::solve::{Newton, NewtonSettings};
 use crate::statistics::Estimate;
 
@@ -68,11 +69,7 @@ pub fn transfer(
         .tangent
         .at(&energy, &field, &describe)
         .map_err(solve)?;
-    let pull = field
-        .iter()
-        .zip(&start)
-        .map(|(u, given)| u - given)
-        .collect();
+    let pull = difference(&field, &start);
     let multipliers = newton.tangent.changes(&[pull]).map_err(solve)?.remove(0);
     let mut reactions = residual;
     for unknown in newton.free() {

@@ -10,6 +10,7 @@ use crate::material::HyperelasticLaw;
 use crate::material::sheet::Kinematics;
 use crate::problem::sheet_energy::SheetEnergy;
 use crate::solve::tangent::inverted;
+use crate::solve::vector::{difference, moved};
 use crate::solve::{Assembly, Loading, Newton, NewtonSettings};
 
 /// Strains of the bars that differ by less are reached by the tangent taken last.
@@ -173,7 +174,7 @@ impl<'a> Search<'a> {
             .tangent
             .at(&*potential, &state.field, &describe)?;
         self.factorised = Some(state.bars);
-        let mut moved = Vec::new();
+        let mut states = Vec::new();
         for body in others {
             let problem = problem(body);
             let model = problem
@@ -184,12 +185,11 @@ impl<'a> Search<'a> {
             Assembly::residual(&*potential, &state.field, &mut residual)
                 .map_err(|fault| inverted(fault, &describe))?;
             let change = self.newton.tangent.changes(&[residual])?;
-            let pairs = state.field.iter().zip(&change[0]);
-            let mut field: Vec<f64> = pairs.map(|(at, by)| at + by).collect();
+            let mut field = moved(&state.field, 1.0, &change[0]);
             model.impose(1.0, &mut field);
-            moved.push(self.seen(body, state.bars, field));
+            states.push(self.seen(body, state.bars, field));
         }
-        Ok(moved)
+        Ok(states)
     }
 
     /// The state at some strains of the bars, or of the markers where these were measured.
@@ -284,37 +284,29 @@ impl<'a> Search<'a> {
         let model = model.expect("the groups of the shape");
         let potential = model.potential(1.0, &[]);
         let describe = |element| model.describe(element);
-        let mut moved = field.to_vec();
-        model.impose(1.0, &mut moved);
-        let mut residual = vec![0.0; moved.len()];
+        let mut reached = field.to_vec();
+        model.impose(1.0, &mut reached);
+        let mut residual = vec![0.0; reached.len()];
         let is_near =
             |other: [f64; 2]| (0..2).all(|axis| (bars[axis] - other[axis]).abs() < NEARBY);
         let factorised = self.factorised.take();
         let newton = &mut self.newton;
         if factorised.is_some_and(is_near) {
-            newton.solve_near(&*potential, &mut moved, &mut residual, NEWTON, &describe)?;
+            newton.solve_near(&*potential, &mut reached, &mut residual, NEWTON, &describe)?;
         } else if is_near(from) {
-            newton.solve(&*potential, &mut moved, &mut residual, NEWTON, &describe)?;
+            newton.solve(&*potential, &mut reached, &mut residual, NEWTON, &describe)?;
         } else {
-            let motion: Vec<f64> = moved
-                .iter()
-                .zip(field)
-                .map(|(to, from)| to - from)
-                .collect();
+            let motion = difference(&reached, field);
             let change = newton
                 .tangent
                 .predict(&*potential, field, &motion, &describe)?;
-            moved = field
-                .iter()
-                .zip(change)
-                .map(|(from, by)| from + by)
-                .collect();
-            model.impose(1.0, &mut moved);
-            newton.solve(&*potential, &mut moved, &mut residual, NEWTON, &describe)?;
+            reached = moved(field, 1.0, &change);
+            model.impose(1.0, &mut reached);
+            newton.solve(&*potential, &mut reached, &mut residual, NEWTON, &describe)?;
         }
-        model.impose(1.0, &mut moved);
+        model.impose(1.0, &mut reached);
         self.factorised = Some(bars);
-        Ok(self.seen(body, bars, moved))
+        Ok(self.seen(body, bars, reached))
     }
 
     /// What is seen of an equilibrium.

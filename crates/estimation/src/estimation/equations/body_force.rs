@@ -8,6 +8,7 @@ use nalgebra::DMatrix;
 
 use crate::estimation::regression::Roughness;
 use crate::mesh::Mesh;
+use crate::solve::vector::add_scaled;
 use crate::statistics::{BSpline, Ends};
 
 /// Spans along the longer side of the specimen's box.
@@ -61,9 +62,7 @@ impl BodyForce {
     pub fn forces(&self, coefficients: &[f64], unknowns: usize) -> Vec<f64> {
         let mut sum = vec![0.0; unknowns];
         for (column, factor) in self.columns.iter().zip(coefficients) {
-            sum.iter_mut()
-                .zip(column)
-                .for_each(|(s, c)| *s += factor * c);
+            add_scaled(&mut sum, *factor, column);
         }
         sum
     }

@@ -8,7 +8,7 @@ use crate::estimation::equations::{Equations, SearchState, solve};
 use crate::estimation::input::MeasuredForce;
 use crate::problem::corner_forces::Share;
 use crate::solve::Assembly;
-use crate::solve::vector::dot;
+use crate::solve::vector::{add_scaled, dot};
 
 /// The equations and the observations linearised about a place.
 pub struct Linear {
@@ -48,11 +48,8 @@ impl Equations<'_> {
         forces.extend(body.map(|column| column.iter().map(|force| -force).collect()));
         let mut changes = self.newton.tangent.changes(&forces).map_err(solve)?;
         let mut sensitivities = changes.split_off(1);
-        for (sensitivity, motion) in sensitivities.iter_mut().zip(motions) {
-            sensitivity
-                .iter_mut()
-                .zip(motion)
-                .for_each(|(s, m)| *s += m);
+        for (sensitivity, motion) in sensitivities.iter_mut().zip(&motions) {
+            add_scaled(sensitivity, 1.0, motion);
         }
         let still = changes.remove(0);
         let interpolation = &self.task.observations.interpolation;
@@ -108,10 +105,9 @@ impl Equations<'_> {
         for (node, factor) in shares {
             marks[2 * node + axis] += factor;
         }
-        self.newton
-            .free()
-            .iter()
-            .for_each(|unknown| marks[*unknown] = 0.0);
+        for unknown in self.newton.free() {
+            marks[*unknown] = 0.0;
+        }
         let mut pull = vec![0.0; field.len()];
         let added = Assembly::add_product(&self.energy, field, &marks, &mut pull);
         added.map_err(|fault| self.inverted(fault))?;

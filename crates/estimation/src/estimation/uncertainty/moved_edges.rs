@@ -19,6 +19,7 @@ use crate::estimation::outcome::MovedPart;
 use crate::estimation::search::NearestField;
 use crate::material::sheet::{Kinematics, PlaneTensor};
 use crate::solve::Assembly;
+use crate::solve::vector::{add_scaled, moved};
 
 /// A part of the edge with the displacements of the markers per mm that it lies farther out: two rows per marker.
 pub type MovedEdge = (MovedPart, DMatrix<f64>);
@@ -36,9 +37,7 @@ impl NearestField<'_> {
         let mut strips = self.strips(edges);
         let mut all = vec![0.0; self.field.len()];
         for strip in &strips {
-            all.iter_mut()
-                .zip(strip)
-                .for_each(|(sum, value)| *sum += value);
+            add_scaled(&mut all, 1.0, strip);
         }
         if strips.len() > 1 {
             parts.push(MovedPart::FreeEdges);
@@ -70,7 +69,7 @@ impl NearestField<'_> {
         added.map_err(|fault| equations.inverted(fault))?;
         let changes = equations.newton.tangent.changes(&[forces]);
         let change = changes.map_err(solve)?.remove(0);
-        let total: Vec<f64> = change.iter().zip(&motion).map(|(u, g)| u + g).collect();
+        let total = moved(&change, 1.0, &motion);
         let markers = self.observations().interpolation.multiply(&total);
         Ok(DMatrix::from_vec(markers.len(), 1, markers))
     }

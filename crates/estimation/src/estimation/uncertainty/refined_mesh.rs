@@ -25,7 +25,7 @@ use crate::estimation::search::NearestField;
 use crate::mesh::Mesh;
 use crate::problem::corner_forces::{Hold, Share, reaction_shares};
 use crate::problem::sheet_energy::SheetEnergy;
-use crate::solve::vector::dot;
+use crate::solve::vector::{difference, dot, moved};
 use crate::solve::{Newton, NewtonSettings, Sum};
 
 /// Meshes with more cells are not refined.
@@ -114,24 +114,13 @@ impl NearestField<'_> {
     /// The mesh's own error, computed again even where it is known.
     pub fn compute_mesh_error(&self, edges: &[Edge]) -> Option<MeshError> {
         let mesh = self.equations.task.specimen.mesh;
-        let difference = self.mesh_difference(edges)?;
-        let target = self
-            .equations
-            .mesh_target(&difference, &self.linear, &self.variances);
+        let refined = self.mesh_difference(edges)?;
+        let (linear, variances) = (&self.linear, &self.variances);
+        let target = self.equations.mesh_target(&refined, linear, variances);
         let change = &self.fit.covariance * target;
-        let MeshDifference {
-            fine,
-            markers: at_markers,
-            forces,
-        } = difference;
+        let fine = &refined.fine;
         let there = fine.mesh.displacement_on(&fine.displacement, mesh);
-        let difference: Vec<f64> = there.iter().zip(&self.field).map(|(a, b)| a - b).collect();
-        let along = |values: &[f64], slopes: &dyn Fn(usize) -> f64| -> Vec<f64> {
-            let values_of_rows = values.iter().enumerate();
-            values_of_rows
-                .map(|(row, value)| value + slopes(row))
-                .collect()
-        };
+        let difference = difference(&there, &self.field);
         let columns = || self.linear.sensitivities.iter().zip(change.iter());
         let adapted: Vec<f64> = (0..difference.len())
             .map(|row| columns().map(|(column, change)| column[row] * change).sum())
@@ -141,15 +130,15 @@ impl NearestField<'_> {
             let fine = fine.gradient_amid(cell);
             [0, 1, 2, 3].map(|component| fine[component] + after[component])
         };
-        let moved = &self.linear.design * &change;
+        let followed = &self.linear.design * &change;
         Some(MeshError {
-            displacement: along(&difference, &|row| adapted[row]),
+            displacement: moved(&difference, 1.0, &adapted),
             gradients: (0..mesh.cell_count())
                 .into_par_iter()
                 .map(gradient)
                 .collect(),
-            markers: along(&at_markers, &|row| moved[row]),
-            forces,
+            markers: moved(&refined.markers, 1.0, followed.as_slice()),
+            forces: refined.forces,
             parameters: change,
         })
     }
