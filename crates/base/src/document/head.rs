@@ -55,6 +55,13 @@ impl<'a> Head<'a> {
         Box::new(self.table.fault(position, message, hint))
     }
 
+    /// A fault of the statement about `key`.
+    pub fn fault_of(&self, key: &str, message: impl Into<String>, hint: &str) -> Box<Diagnostic> {
+        let pair = self.pairs.get(key);
+        let position = pair.map_or(0..0, |(_, position)| position.clone());
+        self.fault(position, message, hint)
+    }
+
     /// A fault for a key that is not stated.
     pub fn missing(&self, key: &str, example: &str) -> Box<Diagnostic> {
         let option = key.replace(" measure", "").replace(' ', "-");
@@ -153,11 +160,7 @@ impl<'a> Head<'a> {
             return Ok(*choice);
         }
         let hint = suggestion(&value, &known(), "it must be one of");
-        Err(self.fault(
-            self.position(key),
-            format!("the {key} `{value}` is not known"),
-            &hint,
-        ))
+        Err(self.fault_of(key, format!("the {key} `{value}` is not known"), &hint))
     }
 
     /// A positive quantity such as the specimen's area, where it is stated.
@@ -176,11 +179,7 @@ impl<'a> Head<'a> {
             }
             Err(fault) => (fault.to_string(), fault.remedy(&value, dimension)),
         };
-        Err(self.fault(
-            self.position(key),
-            format!("the {key} \"{value}\" {reason}"),
-            &hint,
-        ))
+        Err(self.fault_of(key, format!("the {key} \"{value}\" {reason}"), &hint))
     }
 
     /// The same quantity where it is required.
@@ -238,12 +237,6 @@ impl<'a> Head<'a> {
             let position = self.table.columns_place.clone();
             self.fault(position, format!("the {key} {fault}"), &hint)
         })
-    }
-
-    /// The place of the head's statement about `key`.
-    pub fn position(&self, key: &str) -> Range<usize> {
-        let pair = self.pairs.get(key);
-        pair.map_or(0..0, |(_, position)| position.clone())
     }
 }
 

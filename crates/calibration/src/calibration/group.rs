@@ -83,11 +83,8 @@ impl Group {
     /// The largest strains along both axes that all specimens reached.
     fn reached(&self) -> [f64; 2] {
         [0, 1].map(|axis| {
-            let of_test = |test: &TestData| {
-                let rows = test.observations.iter();
-                rows.map(|one| one.strains[axis]).fold(0.0, f64::max)
-            };
-            self.tests.iter().map(of_test).fold(f64::INFINITY, f64::min)
+            let reached = self.tests.iter().map(|test| test.reached(axis));
+            reached.fold(f64::INFINITY, f64::min)
         })
     }
 

@@ -36,11 +36,6 @@ pub fn protocols(fit: &Fit, tests: &[TestData]) -> Option<Protocols> {
     })
 }
 
-fn largest_stress(tests: &[TestData]) -> f64 {
-    let stresses = tests.iter().map(|test| test.largest_stress);
-    stresses.fold(0.0, f64::max)
-}
-
 /// The error with which a protocol is predicted by the law fitted to the others in % of the largest stress.
 fn left_out(fit: &Fit, protocols: &[TestData], number: usize) -> Option<f64> {
     let mut others = protocols.to_vec();
@@ -63,7 +58,7 @@ fn left_out(fit: &Fit, protocols: &[TestData], number: usize) -> Option<f64> {
         .map(|(one, stress)| (one.stress - stress).powi(2))
         .sum();
     let error = (square / predicted.len() as f64).sqrt();
-    Some(100.0 * error / largest_stress(protocols))
+    Some(100.0 * error / TestData::largest_stress(protocols))
 }
 
 /// The most useful further protocol.
@@ -133,17 +128,14 @@ fn variance(fit: &Fit, protocols: &[TestData], values: usize) -> f64 {
 
 /// A protocol up to shares of the largest strains, or to the largest stress, whose stresses are those of the law.
 fn protocol(fit: &Fit, protocols: &[TestData], ratio: [f64; 2]) -> Option<TestData> {
-    let rows = protocols
-        .iter()
-        .map(|protocol| protocol.observations.len())
-        .sum::<usize>();
+    let rows = protocols.iter().map(|one| one.observations.len());
+    let rows = rows.sum::<usize>();
     let rows = (rows / protocols.len() / 2).max(2);
-    let all = protocols.iter().flat_map(|protocol| &protocol.observations);
     let largest = [0, 1].map(|axis| {
-        let strains = all.clone().map(|one| one.strains[axis]);
+        let strains = protocols.iter().map(|protocol| protocol.reached(axis));
         ratio[axis] * strains.fold(0.0, f64::max)
     });
-    let most = largest_stress(protocols);
+    let most = TestData::largest_stress(protocols);
     let of_rows = |stress: f64| {
         let observations = (1..=rows).flat_map(|row| {
             let share = row as f64 / rows as f64;

@@ -1,6 +1,6 @@
 //! The settings of a fit: weights, bounds, starts.
 
-use super::data::{Observation, Test, TestData};
+use super::data::{Test, TestData};
 use crate::document::{Bound, name_of};
 use crate::error::{Error, suggestion};
 use crate::material::parameters::{Parameter, StrainMeasure, StressMeasure};
@@ -38,11 +38,6 @@ impl Weighting {
                 100.0 * SMALLEST_SHARE
             ),
         }
-    }
-
-    /// The weight of an observation by its own stress.
-    pub(in crate::calibration) fn weight(self, data: &TestData, observation: &Observation) -> f64 {
-        self.weight_of(data, observation.stress)
     }
 
     /// The weight of a stress in MPa, measured or fitted.

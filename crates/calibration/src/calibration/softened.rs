@@ -119,10 +119,7 @@ struct Record {
 
 impl Record {
     fn of(data: &TestData, law: &dyn HyperelasticLaw, predicted: &[f64]) -> Self {
-        let axis = match data.test {
-            Test::Uniaxial | Test::SimpleShear => data.axes[0],
-            _ => data.drawn_axis,
-        };
+        let axis = data.drawn_axis_of(data.axes[0]);
         let rows = data.observations.iter().zip(predicted);
         let rows = rows.filter(|(one, _)| one.axis == axis);
         let row = |(one, fitted): (&Observation, &f64)| {

@@ -230,7 +230,7 @@ fn bounds_weights_and_few_points_are_respected() {
         stress: 1e-6 * tests[0].largest_stress,
         ..tests[0].observations[0]
     };
-    let weight = Weighting::Relative.weight(&tests[0], &small) * tests[0].largest_stress;
+    let weight = Weighting::Relative.weight_of(&tests[0], small.stress) * tests[0].largest_stress;
     assert!((weight - 100.0).abs() < 1e-9, "{weight}");
 
     let text = "# test: uniaxial\nstretch [-],nominal_stress [MPa]\n1.1,0.1\n1.2,0.2\n";

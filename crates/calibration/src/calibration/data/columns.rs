@@ -118,7 +118,7 @@ pub fn stresses(
         Some(other) => {
             let message = format!("the direction {other} is not 1 or 2");
             let hint = "1 is the axis of the strain column, 2 the one across";
-            return Err(head.fault(head.position("direction"), message, hint));
+            return Err(head.fault_of("direction", message, hint));
         }
     };
     let mut columns = Vec::new();
@@ -188,11 +188,7 @@ pub fn area(head: &Head, roles: &[Role], axis: Option<usize>) -> Faulty<f64> {
         }
         (Some(_), ..) => {
             let message = "the area is stated, and width or thickness too";
-            Err(head.fault(
-                head.position("area"),
-                message,
-                "state the area, or both sides",
-            ))
+            Err(head.fault_of("area", message, "state the area, or both sides"))
         }
     }
 }
@@ -243,11 +239,7 @@ pub fn strain_ratio(head: &Head) -> Faulty<f64> {
     let number = ratio.parse::<f64>().ok().filter(|ratio| ratio.is_finite());
     number.ok_or_else(|| {
         let message = format!("the strain ratio {ratio} is not a number");
-        head.fault(
-            head.position(KEY),
-            message,
-            "it is ε₂/ε₁ of nominal strains",
-        )
+        head.fault_of(KEY, message, "it is ε₂/ε₁ of nominal strains")
     })
 }
 

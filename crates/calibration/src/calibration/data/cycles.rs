@@ -41,7 +41,7 @@ impl Cycle {
         let message = || format!("the cycle `{text}` is not known");
         cycle
             .map(Some)
-            .ok_or_else(|| head.fault(head.position(CYCLE), message(), hint))
+            .ok_or_else(|| head.fault_of(CYCLE, message(), hint))
     }
 }
 
@@ -56,7 +56,7 @@ pub fn preconditioned(head: &Head, test: Test, far: f64) -> Faulty<Option<f64>> 
     let Some(stretch) = head.quantity(PRECONDITIONED, Dimension::Ratio)? else {
         return Ok(None);
     };
-    let fault = |message: &str, hint| Err(head.fault(head.position(PRECONDITIONED), message, hint));
+    let fault = |message: &str, hint| Err(head.fault_of(PRECONDITIONED, message, hint));
     if test == Test::Biaxial {
         let message = "one earlier stretch does not state the earlier state of a biaxial test";
         let hint = "state it for uniaxial, planar and equibiaxial tests; or give the record from the first loading on";
@@ -209,9 +209,7 @@ impl TestData {
             .map(|rows| &self.observations[each * rows.start..each * rows.end])
             .collect()
     }
-}
 
-impl TestData {
     /// The test as one for each of its [`Self::protocols`].
     pub fn by_protocol(&self) -> Vec<Self> {
         let protocols = self.protocols();

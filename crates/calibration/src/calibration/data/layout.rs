@@ -3,7 +3,6 @@
 use super::choice::Choice;
 use super::columns::{Scaled, StressColumn, machine, strain_ratio, strains, stresses, time};
 use super::cycles::{SPECIMEN_NAME, preconditioned, reversals};
-use super::gross_rows::{gross_rows, torn_rows};
 use super::mounting::Mounted;
 use super::mounting_statements::refuse_cauchy;
 use super::plausible::{check_signs, implausible, stress_at_rest};
@@ -119,30 +118,17 @@ impl Layout {
         strains.chain(self.stresses.iter().map(|stress| stress.column))
     }
 
-    /// λ − 1 along the first axis in a row, without any zero found in the record.
-    pub fn strain_as_written(&self, row: &[f64]) -> f64 {
-        self.strains_of(row, &Part::all_rows(0))[0]
-    }
-
-    /// Those of some rows at which the stress of an axis leaves the curve of its neighbours.
-    pub fn gross_rows(&self, table: &Table, rows: &[usize]) -> Vec<usize> {
-        self.unlike(table, rows, gross_rows)
-    }
-
-    /// Those of some rows behind a rupture of the specimen.
-    pub fn torn_rows(&self, table: &Table, rows: &[usize]) -> Vec<usize> {
-        self.unlike(table, rows, torn_rows)
-    }
-
     /// Those of some rows that are `chosen` by strains and stresses of any axis.
-    fn unlike(
+    pub fn unlike(
         &self,
         table: &Table,
         rows: &[usize],
         chosen: fn(&[f64], &[f64]) -> Vec<usize>,
     ) -> Vec<usize> {
         let row = |row: &usize| &table.rows[*row].0;
-        let strains = rows.iter().map(|index| self.strain_as_written(row(index)));
+        // Without any zero found in the record.
+        let plain = Part::all_rows(0);
+        let strains = rows.iter().map(|at| self.strains_of(row(at), &plain)[0]);
         let strains: Vec<f64> = strains.collect();
         let of_axis = |stress: &StressColumn| {
             let stresses: Vec<f64> = rows.iter().map(|at| row(at)[stress.column]).collect();
@@ -189,8 +175,6 @@ impl Layout {
             observations.extend(self.observations(row, [first, second], &part));
         }
         let observations = kept;
-        let stresses = observations.iter().map(|one| one.stress.abs());
-        let largest_stress = stresses.fold(0.0, f64::max);
         check_signs(head, &observations, self.test)?;
         let widest = Observation::farthest_strains(&observations);
         let at_rest = stress_at_rest(head, &observations).filter(|_| part.offset == 0.0);
@@ -206,8 +190,8 @@ impl Layout {
             axes: self.stresses.iter().map(|stress| stress.axis).collect(),
             drawn_axis: Observation::drawn_axis(widest),
             loaded: Loaded::of(observations.iter().flat_map(|one| one.strains)),
+            largest_stress: Observation::largest_stress(&observations),
             observations,
-            largest_stress,
             rounding: self.rounding(table, &rows),
             times: self.times(table, &rows),
             rise: head.quantity("ramp", Dimension::Time)?.unwrap_or(0.0),
@@ -325,11 +309,7 @@ fn flip(head: &Head, measure: StrainColumn) -> Faulty<[f64; 2]> {
     let signs = head.choice(FLIP, None, &FLIPS)?;
     if signs[0] < 0.0 && measure == StrainColumn::Stretch {
         let message = "a stretch has no sign that could be reversed";
-        return Err(head.fault(
-            head.position(FLIP),
-            message,
-            "--flip stress reverses the stresses",
-        ));
+        return Err(head.fault_of(FLIP, message, "--flip stress reverses the stresses"));
     }
     Ok(signs)
 }

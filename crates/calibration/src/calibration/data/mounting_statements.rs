@@ -43,7 +43,7 @@ impl Mounted {
             let message = "mounting, rest state and zero of force are those of a biaxial test";
             let hint =
                 "give strains and stresses along both axes with --test biaxial, or leave them out";
-            return Err(head.fault(head.position("mounting"), message, hint));
+            return Err(head.fault_of("mounting", message, hint));
         }
         Ok(stated)
     }
@@ -58,8 +58,8 @@ impl Mounting {
                 .iter()
                 .find(|key| !matches!(head.text(key), Ok(None)))
             {
-                Some(key) => Err(head.fault(
-                    head.position(key),
+                Some(key) => Err(head.fault_of(
+                    key,
                     format!("the {key} is stated, and the mounting is not"),
                     "state the mounting too: rakes or cruciform",
                 )),
@@ -77,7 +77,7 @@ impl Mounting {
         if markers.is_some_and(|side| side > 0.8 * least) {
             let message = "the square of the markers must lie well within the sheet";
             let hint = format!("its side must be below {} mm", 0.8 * least);
-            return Err(head.fault(head.position("markers"), message, &hint));
+            return Err(head.fault_of("markers", message, &hint));
         }
         // Stresses are those of any thickness.
         let thickness = head
@@ -121,7 +121,7 @@ fn shape(head: &Head, holder: Holder, lengths: [f64; 2]) -> Faulty<Shape> {
     };
     if let Err(misfit) = shape.check() {
         let message = format!("{}: {misfit}", misfit.measure.replace('_', " "));
-        return Err(head.fault(head.position("mounting"), message, &misfit.remedy()));
+        return Err(head.fault_of("mounting", message, &misfit.remedy()));
     }
     Ok(shape)
 }
@@ -136,8 +136,8 @@ fn tines(head: &Head) -> Faulty<usize> {
         .filter(|tines| (1..=MOST_TINES).contains(tines))
         .ok_or_else(|| {
             let message = format!("the number of tines `{text}` cannot be taken");
-            head.fault(
-                head.position("tines"),
+            head.fault_of(
+                "tines",
                 message,
                 &format!("a whole number from 1 to {MOST_TINES}, for each side"),
             )
@@ -157,11 +157,11 @@ fn rest_state(head: &Head) -> Faulty<RestState> {
         (_, Some([first, second])) if in_range(first) && in_range(second) => {
             Ok(RestState::Stated([*first, *second]))
         }
-        _ => Err(head.fault(
-            head.position("rest state"),
-            format!("the rest state `{text}` is not known"),
-            "as-mounted, estimated, or the stretches along both axes as mounted, such as 1.05,1.03 (from 0.7 to 2)",
-        )),
+        _ => {
+            let message = format!("the rest state `{text}` is not known");
+            let hint = "as-mounted, estimated, or the stretches along both axes as mounted, such as 1.05,1.03 (from 0.7 to 2)";
+            Err(head.fault_of("rest state", message, hint))
+        }
     }
 }
 
@@ -176,9 +176,5 @@ fn is_estimated(head: &Head) -> Faulty<bool> {
 /// What a user must know of a test whose stresses are Cauchy stresses: forces follow from them by the stretch of the middle alone.
 pub(super) fn refuse_cauchy(head: &Head) -> Box<Diagnostic> {
     let message = "the forces of a mounted sheet do not follow from Cauchy stresses";
-    head.fault(
-        head.position("mounting"),
-        message,
-        "give forces, or nominal stresses",
-    )
+    head.fault_of("mounting", message, "give forces, or nominal stresses")
 }

@@ -39,7 +39,7 @@ pub fn check_signs(head: &Head, observations: &[Observation], test: Test) -> Fau
     if compression && strains().any(|x| x > at_rest) {
         let message = "a compression test has positive strains";
         let hint = "give strains and stresses of compression a minus sign, or stretches below 1";
-        return Err(head.fault(head.position("test"), message, hint));
+        return Err(head.fault_of("test", message, hint));
     }
     Ok(())
 }

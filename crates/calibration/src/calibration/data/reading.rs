@@ -4,6 +4,7 @@ use std::path::Path;
 
 use super::choice::COLUMNS;
 use super::cycles::{PRECONDITIONED, SPECIMEN_NAME};
+use super::gross_rows::{gross_rows, torn_rows};
 use super::layout::{FLIP, Layout};
 use super::row_choice::{ROWS, STRAIN_RANGE, chosen_rows};
 use super::test_data::TestData;
@@ -80,8 +81,9 @@ impl TestData {
         let rows_are_stated = head.text(ROWS).map_err(|fault| input(*fault))?.is_some();
         let (mut gross, mut torn) = (Vec::new(), Vec::new());
         if !rows_are_stated {
-            gross = layout.gross_rows(table, &chosen);
-            torn = layout.torn_rows(table, &kept(&chosen, |row| !gross.contains(row)).0);
+            gross = layout.unlike(table, &chosen, gross_rows);
+            let others = kept(&chosen, |row| !gross.contains(row)).0;
+            torn = layout.unlike(table, &others, torn_rows);
         }
         let is_good = |row: &usize| !gross.contains(row) && !torn.contains(row);
         let (chosen, _) = kept(&chosen, is_good);

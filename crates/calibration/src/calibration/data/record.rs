@@ -108,7 +108,7 @@ impl Part {
         if branches.only_unloads && cycle != Cycle::All {
             let message = "these rows have no loading branch: the specimen is only unloaded";
             let hint = "take rows that begin before a loading branch; `--cycle all` fits the unloading as it is in the file";
-            return Err(head.fault(head.position(ROWS), message, hint));
+            return Err(head.fault_of(ROWS, message, hint));
         }
         if count == 0 {
             return Ok(());
@@ -116,7 +116,7 @@ impl Part {
         let Some(rows) = branches.rows(cycle) else {
             let message = format!("there is no such cycle: {}", cycles(count));
             let hint = "first, last, all, or a number up to that";
-            return Err(head.fault(head.position(CYCLE), message, hint));
+            return Err(head.fault_of(CYCLE, message, hint));
         };
         self.rows = rows;
         if branches.is_one_pull {
@@ -163,24 +163,19 @@ impl Part {
         [strains, stresses]: [&[f64]; 2],
     ) -> Faulty<()> {
         let (x, y) = (&strains[loading.clone()], &stresses[loading.clone()]);
+        let Machine { length, area, .. } = machine;
         match zero {
             Zero::AsWritten => {}
             Zero::Automatic => self.set_right(machine, Beginning::of(x, y), y),
             Zero::Displacement(u) => {
-                let uncertain = FoundZero::Stress { area: machine.area };
-                let position = either(x, u / machine.length);
-                self.take_stated(head, machine, [x, y], position, uncertain)?;
+                let position = either(x, u / length);
+                self.take_stated(head, machine, [x, y], position)?;
+                self.found_zero = Some(FoundZero::Stress { area });
             }
             Zero::Force(f) => {
-                let length = machine.length;
-                let position = either(y, f / machine.area);
-                self.take_stated(
-                    head,
-                    machine,
-                    [x, y],
-                    position,
-                    FoundZero::Strain { length },
-                )?;
+                let position = either(y, f / area);
+                self.take_stated(head, machine, [x, y], position)?;
+                self.found_zero = Some(FoundZero::Strain { length });
             }
         }
         // Rows before the zero are not fitted.
@@ -196,22 +191,20 @@ impl Part {
     }
 
     /// Takes the zero at a stated place of a branch, as a row and the part of the step behind it; a single row's
-    /// reading scatters, so that the `uncertain` one is determined again with the law.
+    /// reading scatters, so that one of both is determined again with the law.
     fn take_stated(
         &mut self,
         head: &Head,
         machine: Machine,
         [x, y]: [&[f64]; 2],
         position: Option<(usize, f64)>,
-        uncertain: FoundZero,
     ) -> Faulty<()> {
         let Some(position) = position else {
             let message = "the loading branch does not pass the stated zero";
             let hint = "give a displacement or a force that it passes through, or none";
-            return Err(head.fault(head.position(ZERO), message, hint));
+            return Err(head.fault_of(ZERO, message, hint));
         };
         (self.zero, self.offset) = (at(x, position), at(y, position));
-        self.found_zero = Some(uncertain);
         self.remarks.push(format!(
             "the zero of displacement is {:.4} mm as stated, and the force there, {:.4} N, is subtracted",
             machine.length * self.zero,
@@ -304,8 +297,7 @@ impl Zero {
         let Some(text) = head.setting(ZERO, None)? else {
             return Ok(Self::Automatic);
         };
-        let fault =
-            |message: String, hint: &str| Err(head.fault(head.position(ZERO), message, hint));
+        let fault = |message: String, hint: &str| Err(head.fault_of(ZERO, message, hint));
         if machine.is_none() {
             let message = "the zero is found only in tables of displacements and forces".to_owned();
             return fault(message, "leave it out, or shift the strains in the file");

@@ -223,7 +223,7 @@ pub fn check_columns(head: &Head, roles: &[Role], test: Test) -> Faulty<()> {
     if numbered && head.setting("direction", None)?.is_some() {
         let hint = "leave the direction out";
         let message = "the columns of stress name their axes, and a direction is given too";
-        return Err(head.fault(head.position("direction"), message, hint));
+        return Err(head.fault_of("direction", message, hint));
     }
     Ok(())
 }

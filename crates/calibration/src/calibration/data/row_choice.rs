@@ -30,7 +30,7 @@ pub fn chosen_rows(head: &Head, rows: &[usize]) -> Faulty<Vec<usize>> {
     }
     if chosen.is_empty() {
         let hint = "look at the values in the file";
-        return Err(head.fault(head.position(ROWS), "the rows leave no row", hint));
+        return Err(head.fault_of(ROWS, "the rows leave no row", hint));
     }
     Ok(chosen)
 }
@@ -55,7 +55,7 @@ pub fn rows_in_range(
             "the strains go from {least:.4} to {most:.4} there, counted from the zero; those of compression are negative"
         );
         let message = "the strain range leaves none of the rows";
-        return Err(head.fault(head.position(STRAIN_RANGE), message, &hint));
+        return Err(head.fault_of(STRAIN_RANGE, message, &hint));
     }
     Ok(chosen)
 }
@@ -93,7 +93,7 @@ fn conditions(head: &Head) -> Faulty<Vec<Condition>> {
             let message = format!("the rows `{part}` cannot be read");
             let hint =
                 "lines of the file such as 12..340, or a column and its value such as SetName=Test";
-            *head.fault(head.position(ROWS), message, hint)
+            *head.fault_of(ROWS, message, hint)
         })
     });
     parts.collect::<Result<_, _>>().map_err(Box::new)
@@ -114,7 +114,7 @@ fn strain_range(head: &Head) -> Faulty<Option<[f64; 2]>> {
     let Some(range) = range.filter(|[low, high]| low < high) else {
         let message = format!("the strain range `{text}` cannot be read");
         let hint = "nominal strains such as 0..0.3, \"0 %..30 %\" or ..0.3";
-        return Err(head.fault(head.position(STRAIN_RANGE), message, hint));
+        return Err(head.fault_of(STRAIN_RANGE, message, hint));
     };
     Ok(Some(range))
 }

@@ -55,8 +55,7 @@ impl TestData {
         for one in all.observations.iter_mut().chain(&mut all.left_out) {
             *one = change(one);
         }
-        let stresses = all.observations.iter().map(|one| one.stress.abs());
-        all.largest_stress = stresses.fold(0.0, f64::max);
+        all.largest_stress = Observation::largest_stress(&all.observations);
         all
     }
 }

@@ -102,6 +102,12 @@ impl Observation {
         usize::from(second.abs() > first.abs())
     }
 
+    /// The largest stress of some observations without its sign, in MPa.
+    pub(super) fn largest_stress(all: &[Self]) -> f64 {
+        let stresses = all.iter().map(|one| one.stress.abs());
+        stresses.fold(0.0, f64::max)
+    }
+
     /// The mean of neighbouring observations along one axis.
     pub(in crate::calibration) fn mean(bin: &[Self]) -> Self {
         if let [one] = bin {
@@ -198,6 +204,18 @@ impl TestData {
         self.warnings.iter().cloned().chain(remarks).collect()
     }
 
+    /// The largest stress of some tests without its sign, in MPa.
+    pub(in crate::calibration) fn largest_stress(tests: &[Self]) -> f64 {
+        let stresses = tests.iter().map(|test| test.largest_stress);
+        stresses.fold(0.0, f64::max)
+    }
+
+    /// The largest strain along an axis.
+    pub(in crate::calibration) fn reached(&self, axis: usize) -> f64 {
+        let strains = self.observations.iter().map(|one| one.strains[axis]);
+        strains.fold(0.0, f64::max)
+    }
+
     /// The times of the observations in s, if the file has any.
     ///
     /// # Errors
@@ -227,30 +245,20 @@ impl TestData {
 
     /// Energy in mJ/mm³ and nominal stress in MPa of a law at an observation.
     pub fn state_of(&self, law: &dyn HyperelasticLaw, observation: &Observation) -> [f64; 2] {
-        let axis = observation.axis;
-        match self.test {
+        let (axis, [first, second]) = (observation.axis, observation.strains);
+        let (gradient, component) = match self.test {
             Test::Uniaxial => {
                 let direction = [[1.0, 0.0], [0.0, 1.0]][axis];
                 let result = law.tension(direction, observation.strains[axis]);
-                [result.energy, result.nominal_stress]
+                return [result.energy, result.nominal_stress];
             }
-            Test::SimpleShear => {
-                let kinematics =
-                    Kinematics::new(&PlaneTensor::new(0.0, observation.strains[0], 0.0, 0.0));
-                kinematics.map_or([f64::NAN; 2], |kinematics| {
-                    let (energy, stress) = law.stress(&kinematics);
-                    [energy, stress[1]]
-                })
-            }
-            _ => {
-                let [first, second] = observation.strains;
-                let kinematics = Kinematics::new(&PlaneTensor::new(first, 0.0, 0.0, second));
-                kinematics.map_or([f64::NAN; 2], |kinematics| {
-                    let (energy, stress) = law.stress(&kinematics);
-                    [energy, stress[3 * axis]]
-                })
-            }
-        }
+            Test::SimpleShear => (PlaneTensor::new(0.0, first, 0.0, 0.0), 1),
+            _ => (PlaneTensor::new(first, 0.0, 0.0, second), 3 * axis),
+        };
+        Kinematics::new(&gradient).map_or([f64::NAN; 2], |kinematics| {
+            let (energy, stress) = law.stress(&kinematics);
+            [energy, stress[component]]
+        })
     }
 
     /// The largest energy of a law in mJ/mm³ before the record: at the strain to which the specimen was stretched, zero where none is stated.
@@ -260,10 +268,7 @@ impl TestData {
                 Test::Planar => 0.0,
                 _ => x,
             };
-            let axis = match self.test {
-                Test::Uniaxial => self.axes[0],
-                _ => self.drawn_axis,
-            };
+            let axis = self.drawn_axis_of(self.axes[0]);
             let mut strains = [across; 2];
             strains[axis] = x;
             let observation = Observation {
@@ -298,9 +303,14 @@ impl TestData {
 
     /// λ − 1 along the axis over which the data are drawn: the one of the stress in a uniaxial test, otherwise the one that is stretched further.
     pub fn drawn_strain(&self, observation: &Observation) -> f64 {
+        observation.strains[self.drawn_axis_of(observation.axis)]
+    }
+
+    /// The axis over which the stresses of an axis are drawn.
+    pub(in crate::calibration) fn drawn_axis_of(&self, axis: usize) -> usize {
         match self.test {
-            Test::Uniaxial | Test::SimpleShear => observation.strains[observation.axis],
-            _ => observation.strains[self.drawn_axis],
+            Test::Uniaxial | Test::SimpleShear => axis,
+            _ => self.drawn_axis,
         }
     }
 
@@ -332,11 +342,7 @@ impl TestData {
         let ends = [sorted.first(), sorted.last()]
             .map(|one| one.map_or(0.0, |one| self.drawn_strain(one)));
         let (low, high) = (ends[0].min(0.0), ends[1].max(0.0));
-        let drawn = if matches!(self.test, Test::Uniaxial | Test::SimpleShear) {
-            axis
-        } else {
-            self.drawn_axis
-        };
+        let drawn = self.drawn_axis_of(axis);
         let at = |x: f64| {
             let across = match self.test {
                 Test::Uniaxial | Test::SimpleShear => f64::NAN,

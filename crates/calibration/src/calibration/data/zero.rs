@@ -59,13 +59,9 @@ pub enum Beginning {
 
 /// Columns of the curve that bends at a strain.
 fn columns(x: &[f64], bend: f64) -> DMatrix<f64> {
-    DMatrix::from_fn(x.len(), 3, |row, column| {
-        (x[row] - bend).max(0.0).powi(column as i32)
-    })
-    .map_with_location(|row, column, value| match column {
+    DMatrix::from_fn(x.len(), 3, |row, column| match column {
         0 => 1.0,
-        _ if x[row] > bend => value,
-        _ => 0.0,
+        _ => (x[row] - bend).max(0.0).powi(column as i32),
     })
 }
 

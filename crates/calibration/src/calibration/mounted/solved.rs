@@ -86,7 +86,7 @@ impl Solved {
             stretches: [1.0; 2],
         }];
         let states = self.sheet.states(&laws, self.interpolation.knots(), &[])?;
-        let scale = ([0.0; 2], self.largest_stress());
+        let scale = ([0.0; 2], TestData::largest_stress(&self.tests));
         let middle = Middle::new(&self.interpolation, &laws, &[], &states, scale);
         self.states = states.into_iter().flatten().collect();
         Ok(middle)
@@ -272,7 +272,7 @@ impl Solved {
             .states(&laws, self.interpolation.knots(), &self.states)?;
         let states = solved.iter().map(|states| states[0].clone());
         self.states = states.collect();
-        let scale = (read, self.largest_stress());
+        let scale = (read, TestData::largest_stress(&self.tests));
         Ok(Middle::new(
             &self.interpolation,
             &laws,
@@ -365,22 +365,17 @@ impl Solved {
             }
         }
         let states: Vec<Vec<SheetState>> = states.into_iter().map(|state| vec![state]).collect();
-        let change = most / self.largest_stress();
+        let change = most / TestData::largest_stress(&self.tests);
         Ok((reached.middle.with_states(&law, &states), change))
-    }
-
-    fn largest_stress(&self) -> f64 {
-        let largest = self.tests.iter().map(|test| test.largest_stress);
-        largest.fold(0.0, f64::max)
     }
 
     /// By how much the stresses of the homogeneous reading deviate along both axes in %.
     pub fn bias(&self, homogeneous: &Fit, fit: &Fit) -> [f64; 2] {
-        let farthest = |axis: usize| {
-            let rows = self.tests.iter().flat_map(|test| &test.observations);
-            rows.map(|one| one.strains[axis]).fold(0.0, f64::max)
+        let reached = |axis: usize| {
+            let strains = self.tests.iter().map(|test| test.reached(axis));
+            strains.fold(0.0, f64::max)
         };
-        let strain = farthest(0).min(farthest(1));
+        let strain = reached(0).min(reached(1));
         let laws = [homogeneous, fit].map(|fit| self.sheet_law(fit.law, &fit.values()).0);
         let off = |step: u8, axis: usize| {
             let at = [f64::from(step) / 10.0 * strain; 2];

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 
 use super::linear::{Bend, Linear};
 use super::misfit::{Estimated, Misfit, Response, Row, at_bound};
@@ -193,15 +193,8 @@ impl<'a> Elastic<'a> {
 /// The mean of neighbouring observations of a test.
 fn point(test: usize, data: &TestData, bin: &[Observation]) -> (Row, Observation) {
     let observation = Observation::mean(bin);
-    let row = Row {
-        test,
-        axis: observation.axis,
-        position: data.drawn_strain(&observation),
-        stress: observation.stress,
-        count: bin.len() as f64,
-        factor: 1.0,
-        weight: 1.0,
-    };
+    let position = data.drawn_strain(&observation);
+    let row = Row::of(test, &observation, position, bin.len() as f64);
     (row, observation)
 }
 
@@ -319,21 +312,16 @@ impl Misfit<Elastic<'_>> {
 
     /// The values of some parameters that are stresses beside all others, by linear least squares.
     pub fn complete(&self, values: &mut [f64], stresses: &[usize]) -> Option<()> {
-        let weighed = |stresses: Vec<f64>| {
-            let pairs = self.rows.iter().zip(stresses);
-            let weighed = pairs.map(|(row, stress)| row.weight * stress);
-            DVector::from_iterator(self.rows.len(), weighed)
-        };
         let mut others = values.to_vec();
         stresses.iter().for_each(|index| others[*index] = 0.0);
-        let constant = weighed(self.response.stresses(&others));
+        let constant = self.weighed(self.response.stresses(&others));
         let measured = self.rows.iter().map(|row| row.stress).collect();
-        let target = weighed(measured) - &constant;
+        let target = self.weighed(measured) - &constant;
         let mut columns = DMatrix::zeros(self.rows.len(), stresses.len());
         for (column, parameter) in stresses.iter().enumerate() {
             let mut unit = others.clone();
             unit[*parameter] = 1.0;
-            let modelled = weighed(self.response.stresses(&unit)) - &constant;
+            let modelled = self.weighed(self.response.stresses(&unit)) - &constant;
             columns.set_column(column, &modelled);
         }
         let completed = least_squares::linear(&columns, &target)?;

@@ -3,8 +3,10 @@
 use std::borrow::Cow;
 use std::sync::Arc;
 
+use nalgebra::DVector;
+
 use super::zero::Zero;
-use crate::calibration::data::TestData;
+use crate::calibration::data::{Observation, TestData};
 use crate::calibration::least_squares::{LEAST_SIZE, Residuals};
 use crate::calibration::settings::Weighting;
 use crate::material::HyperelasticLaw;
@@ -32,6 +34,19 @@ pub struct Row {
 }
 
 impl Row {
+    /// A measured stress of a test, by a weight of one.
+    pub fn of(test: usize, one: &Observation, position: f64, count: f64) -> Self {
+        Self {
+            test,
+            axis: one.axis,
+            position,
+            stress: one.stress,
+            count,
+            factor: 1.0,
+            weight: 1.0,
+        }
+    }
+
     /// An observation's own weight.
     pub fn observation_weight(&self) -> f64 {
         self.weight / self.count.sqrt()
@@ -149,6 +164,13 @@ impl<R: Response> Misfit<R> {
             row.weight = row.factor * self.weighting.weight_of(data, stress) * row.count.sqrt();
         }
         self
+    }
+
+    /// Some stresses, one for each row, by the weights.
+    pub fn weighed(&self, stresses: Vec<f64>) -> DVector<f64> {
+        let pairs = self.rows.iter().zip(stresses);
+        let weighed = pairs.map(|(row, stress)| row.weight * stress);
+        DVector::from_iterator(self.rows.len(), weighed)
     }
 
     /// The rows along each axis of each test.

@@ -42,10 +42,7 @@ impl Zero {
         let mounted = || tests.iter().map(|data| data.mounted);
         // Forces are read before they are related to the cross-section at rest.
         if mounted().any(|mounting| mounting.estimates_force_zero) {
-            let scale = tests
-                .iter()
-                .map(|data| data.largest_stress)
-                .fold(0.0, f64::max);
+            let scale = TestData::largest_stress(tests);
             zeros.extend([0, 1].map(|axis| Self::Force { axis, scale }));
         }
         if mounted().any(|mounting| mounting.estimates_stretches()) {

@@ -92,14 +92,8 @@ impl Response for Viscous<'_> {
             .histories
             .iter()
             .flat_map(|history| history.states.iter().map(move |state| (history, state)));
-        let row = |(number, (history, state)): (usize, (&History, &State))| Row {
-            test: history.test,
-            axis: state.observation.axis,
-            position: number as f64,
-            stress: state.observation.stress,
-            count: state.count,
-            factor: 1.0,
-            weight: 1.0,
+        let row = |(number, (history, state)): (usize, (&History, &State))| {
+            Row::of(history.test, &state.observation, number as f64, state.count)
         };
         states.enumerate().map(row).collect()
     }
@@ -219,24 +213,16 @@ impl Misfit<Viscous<'_>> {
 
     /// AᵀA and Aᵀσ of the weighted columns σ∞ and σₖ, one for each time on the grid.
     fn normal_equations(&self, law: &[f64], grid: &[f64]) -> (DMatrix<f64>, DVector<f64>) {
-        let elastic = self.weigh(self.response.stresses(law));
+        let elastic = self.weighed(self.response.stresses(law));
         let mut columns = vec![elastic.clone()];
         for time in grid {
             // β = 1.
             let values: Vec<f64> = law.iter().copied().chain([0.5, *time]).collect();
-            columns.push(self.weigh(self.response.stresses(&values)) - &elastic);
+            columns.push(self.weighed(self.response.stresses(&values)) - &elastic);
         }
         let columns = DMatrix::from_columns(&columns);
-        let target = self.weigh(self.rows.iter().map(|row| row.stress).collect());
+        let target = self.weighed(self.rows.iter().map(|row| row.stress).collect());
         (columns.tr_mul(&columns), columns.tr_mul(&target))
-    }
-
-    fn weigh(&self, stresses: Vec<f64>) -> DVector<f64> {
-        let pairs = stresses.iter().zip(&self.rows);
-        DVector::from_iterator(
-            stresses.len(),
-            pairs.map(|(stress, row)| stress * row.weight),
-        )
     }
 }
 

@@ -88,15 +88,7 @@ impl Response for Softens<'_> {
         let tests = self.tests.iter().enumerate();
         let rows = tests.flat_map(|(test, data)| {
             let rows = data.observations.iter().enumerate();
-            rows.map(move |(number, one)| Row {
-                test,
-                axis: one.axis,
-                position: number as f64,
-                stress: one.stress,
-                count: 1.0,
-                factor: 1.0,
-                weight: 1.0,
-            })
+            rows.map(move |(number, one)| Row::of(test, one, number as f64, 1.0))
         });
         rows.collect()
     }

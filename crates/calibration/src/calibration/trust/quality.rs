@@ -159,7 +159,7 @@ pub fn rounded(tests: &[TestData], law: &dyn HyperelasticLaw, weighting: Weighti
             };
             let nothing = NOTHING * test.largest_stress;
             let square = stress * stress + nothing * nothing;
-            let weight = weighting.weight(test, one).powi(2);
+            let weight = weighting.weight_of(test, one.stress).powi(2);
             sums[0] += weight * square;
             sums[1] += weight * (square + by_strain.powi(2));
             count += 1;
