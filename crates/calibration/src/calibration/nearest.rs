@@ -134,13 +134,9 @@ impl<D: Fn(&Observation) -> (Vec<f64>, f64)> About<'_, D> {
 
     /// The best values within a share of the size of each, by which the start may be missed.
     pub fn within(&self, share: f64) -> Result<Vec<f64>, Error> {
-        let Model {
-            misfit,
-            bounds,
-            sizes,
-            ..
-        } = self.model()?;
-        let limits = bounds.iter().zip(self.start.iter().zip(&sizes));
+        let model = self.model()?;
+        let sizes = self.start.iter().zip(&model.sizes);
+        let limits = model.bounds.iter().zip(sizes);
         let bounds: Vec<[f64; 2]> = limits
             .map(|([low, high], (value, size))| {
                 [
@@ -149,26 +145,21 @@ impl<D: Fn(&Observation) -> (Vec<f64>, f64)> About<'_, D> {
                 ]
             })
             .collect();
-        Ok(descend(&misfit, self.start, &bounds).unwrap_or_else(|| self.start.to_vec()))
+        Ok(descend(&model.misfit, self.start, &bounds).unwrap_or_else(|| self.start.to_vec()))
     }
 
     /// The fit.
     pub fn fit(&self) -> Result<Fit, Error> {
-        let Model {
-            misfit,
-            parameters,
-            bounds,
-            ..
-        } = self.model()?;
-        let values = descend(&misfit, self.start, &bounds);
+        let model = self.model()?;
+        let values = descend(&model.misfit, self.start, &model.bounds);
         let solution = Solution {
             values: values.unwrap_or_else(|| self.start.to_vec()),
-            misfit,
-            bounds,
+            misfit: model.misfit,
+            bounds: model.bounds,
         };
         Ok(finished(
             self.law,
-            &parameters,
+            &model.parameters,
             solution.settled(),
             self.settings,
             None,

@@ -52,12 +52,11 @@ pub fn fit_relaxation(
     );
     let resolved = resolved(&misfit.response.histories)?;
     let (series, tried) = best_series(&misfit, &elastic, settings, terms, resolved)?;
-    let Series {
-        parameters,
-        solution: best,
-        ..
-    } = series;
-    let begun = Solution { misfit, ..best };
+    let parameters = series.parameters;
+    let begun = Solution {
+        misfit,
+        ..series.solution
+    };
     let solution = begun.checked(law, &parameters)?.settled();
     let mut fit = solution.fit(law, &parameters, settings, None);
     let mut material = solution.misfit.response.material(&solution.values);

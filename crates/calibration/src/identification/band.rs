@@ -66,12 +66,8 @@ impl Function {
 
     /// The 95 % band at `x`, which is valid at all places of both functions together.
     pub fn band(&self, x: f64) -> [f64; 2] {
-        let Estimate {
-            value,
-            standard_error,
-            ..
-        } = self.at(x);
-        [-1.0, 1.0].map(|sign| value + sign * self.reach[1] * standard_error)
+        let at = self.at(x);
+        [-1.0, 1.0].map(|sign| at.value + sign * self.reach[1] * at.standard_error)
     }
 
     /// Evenly spaced arguments over the range of the data.
