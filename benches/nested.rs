@@ -57,13 +57,8 @@ fn compare(problem: &BoundaryProblem, kind: CellShape, halvings: u32) {
 }
 
 fn main() {
-    let problem = BoundaryProblem {
-        thickness: 2.0,
-        law: Arc::new(NeoHooke { c10: 0.05 }),
-        regions: Vec::new(),
-        supports: named([("left", held(0.0, 0.0)), ("right", held(50.0, 0.0))]),
-        loads: Vec::new(),
-    };
+    let ends = named([("left", held(0.0, 0.0)), ("right", held(50.0, 0.0))]);
+    let problem = BoundaryProblem::supported(2.0, Arc::new(NeoHooke { c10: 0.05 }), ends);
     let one = rayon::ThreadPoolBuilder::new().num_threads(1).build();
     one.expect("a thread").install(|| {
         println!("| cells | nodes | nested [s] | one mesh [s] | one mesh over nested |");

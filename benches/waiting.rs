@@ -92,13 +92,8 @@ struct Truth {
 
 impl Truth {
     fn new() -> Self {
-        let problem = BoundaryProblem {
-            thickness: 2.0,
-            law: Arc::new(NeoHooke { c10: 0.05 }),
-            regions: Vec::new(),
-            supports: named([("left", held(0.0, 0.0)), ("right", held(40.0, 0.0))]),
-            loads: Vec::new(),
-        };
+        let ends = named([("left", held(0.0, 0.0)), ("right", held(40.0, 0.0))]);
+        let problem = BoundaryProblem::supported(2.0, Arc::new(NeoHooke { c10: 0.05 }), ends);
         let mesh = STRIP_WITH_HOLE.mesh(96, CellShape::Quad9);
         let energy = problem.finite_elements(&mesh);
         let model = problem.on(&mesh, &energy).expect("a problem");

@@ -7,7 +7,7 @@ use crate::error::Error;
 use crate::material::{HyperelasticLaw, NeoHooke};
 use crate::mesh::{Block, CellShape, Mesh, mesh_of_blocks};
 use crate::problem::{BoundaryProblem, Model, Support};
-use crate::solve::{NewtonSettings, PathEnd, State};
+use crate::solve::{NewtonSettings, State};
 
 pub mod cantilever;
 pub mod cook;
@@ -25,13 +25,7 @@ const NEWTON: NewtonSettings = NewtonSettings {
 
 /// A neo-Hookean sheet with μ = 0.1 MPa, E = 0.3 MPa, 2 mm thick, without supports and loads.
 fn sheet() -> BoundaryProblem {
-    BoundaryProblem {
-        thickness: 2.0,
-        law: Arc::new(NeoHooke { c10: 0.05 }),
-        regions: Vec::new(),
-        supports: Vec::new(),
-        loads: Vec::new(),
-    }
+    BoundaryProblem::supported(2.0, Arc::new(NeoHooke { c10: 0.05 }), Vec::new())
 }
 
 /// The sheet with some groups at given displacements in mm.
@@ -62,16 +56,9 @@ fn distorted(size: [f64; 2], cells: [usize; 2], shape: CellShape) -> Mesh {
 }
 
 /// Solves to load factor 1 in some steps; the last state.
-fn solve(model: &Model, name: &str, steps: usize) -> Result<State, Error> {
+fn solve(model: &Model, steps: usize) -> Result<State, Error> {
     let factors: Vec<f64> = (1..=steps).map(|i| i as f64 / steps as f64).collect();
-    let states = model.solve(&factors, NEWTON, &|_| ());
-    let states = states.map_err(|end: PathEnd| Error::Solve {
-        model: name.to_owned(),
-        step: end.describe(),
-        fault: end.fault,
-    })?;
-    let last = states.into_iter().last();
-    Ok(last.expect("one state for each factor"))
+    model.reach(&factors, NEWTON)
 }
 
 /// Largest distance of a field from another one at the nodes of a mesh, over the largest size of the other.

@@ -68,11 +68,7 @@ impl Quarter {
         ];
         let supports = held.map(|(group, by)| (group.to_owned(), Support::Displacement(by)));
         Some(Self {
-            problem: BoundaryProblem {
-                regions: Vec::new(),
-                supports: supports.into(),
-                ..plate.boundary_problem()
-            },
+            problem: BoundaryProblem::supported(plate.thickness, Arc::clone(law), supports.into()),
             energy: SheetEnergy::of_mesh(Arc::clone(law), &mesh, plate.thickness),
             mesh,
             linear_solver,

@@ -40,6 +40,21 @@ fn is_of_points(mesh: &Mesh, name: &str) -> bool {
 }
 
 impl BoundaryProblem {
+    /// A sheet of one material between supports, without loads.
+    pub fn supported(
+        thickness: f64,
+        law: Arc<dyn HyperelasticLaw>,
+        supports: Vec<(String, Support)>,
+    ) -> Self {
+        Self {
+            thickness,
+            law,
+            regions: Vec::new(),
+            supports,
+            loads: Vec::new(),
+        }
+    }
+
     /// The finite-element energy of a mesh.
     pub fn finite_elements(&self, mesh: &Mesh) -> SheetEnergy {
         SheetEnergy::of_mesh(self.laws().in_cells(mesh), mesh, self.thickness)

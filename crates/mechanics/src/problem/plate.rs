@@ -34,13 +34,8 @@ impl ClampedPlate {
             let support = Support::Displacement([Some(along), Some(0.0)]);
             (side.name().to_owned(), support)
         };
-        BoundaryProblem {
-            thickness: self.thickness,
-            law: Arc::clone(&self.law),
-            regions: Vec::new(),
-            supports: vec![grip(Side::Left, 0.0), grip(Side::Right, self.size[0])],
-            loads: Vec::new(),
-        }
+        let grips = vec![grip(Side::Left, 0.0), grip(Side::Right, self.size[0])];
+        BoundaryProblem::supported(self.thickness, Arc::clone(&self.law), grips)
     }
 
     /// The plate on a mesh of it with an energy of its nodal displacements; every first guess is a multiple of the

@@ -54,7 +54,7 @@ fn deflection(shape: CellShape, cells: usize) -> Result<f64, Error> {
     let energy = problem.finite_elements(&mesh);
     let force = shear * problem.thickness * HEIGHT;
     let inertia = problem.thickness * HEIGHT.powi(3) / 12.0;
-    let mut model = problem.on(&mesh, &energy)?;
+    let mut model = problem.on(&mesh, &energy)?.named("cantilever");
     // The section at the support warps and contracts as the solution does.
     let share = force / (6.0 * modulus * inertia);
     model.impose_field("left", |[_, y]| {
@@ -62,7 +62,7 @@ fn deflection(shape: CellShape, cells: usize) -> Result<f64, Error> {
         let warp = -share * y * 2.5 * (y * y - HEIGHT * HEIGHT / 4.0);
         [warp, share * 1.5 * y * y * LENGTH]
     });
-    let state = solve(&model, "cantilever", 1)?;
+    let state = solve(&model, 1)?;
     let bent = force * LENGTH.powi(3) / (3.0 * modulus * inertia);
     let sheared = (4.0 + 2.5) * force * HEIGHT * HEIGHT * LENGTH / (24.0 * modulus * inertia);
     let end = mesh.groups()["right"].nodes.iter();

@@ -149,8 +149,8 @@ fn deflection(mesh: &Mesh, traction: f64) -> Result<f64, Error> {
         .loads
         .push(("right".into(), Load::Traction([0.0, traction])));
     let energy = problem.finite_elements(mesh);
-    let model = problem.on(mesh, &energy)?;
-    let state = solve(&model, "Cook's membrane", 2)?;
+    let model = problem.on(mesh, &energy)?.named("Cook's membrane");
+    let state = solve(&model, 2)?;
     Ok(mesh.displacement_at(&state.displacement, [48.0, 60.0])[1])
 }
 

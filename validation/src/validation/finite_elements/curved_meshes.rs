@@ -107,8 +107,8 @@ fn truth(body: &Body, cells: usize) -> Result<f64, Error> {
     let force = |cells: usize| {
         let mesh = (body.mesh)(cells, CellShape::Quad9);
         let energy = body.problem.finite_elements(&mesh);
-        let model = body.problem.on(&mesh, &energy)?;
-        let state = solve(&model, body.name, 1)?;
+        let model = body.problem.on(&mesh, &energy)?.named(body.name);
+        let state = solve(&model, 1)?;
         Ok::<f64, Error>(model.reaction(&state, body.measured)[0])
     };
     let forces = [force(cells / 4)?, force(cells / 2)?, force(cells)?];

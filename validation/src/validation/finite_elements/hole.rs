@@ -101,8 +101,8 @@ fn concentration(mesh: &Mesh, radius: f64) -> Result<f64, Error> {
         ("right", [Some(STRAIN * LENGTH), None]),
     ]);
     let energy = problem.finite_elements(mesh);
-    let model = problem.on(mesh, &energy)?;
-    let state = solve(&model, "strip with a hole", 1)?;
+    let model = problem.on(mesh, &energy)?.named("strip with a hole");
+    let state = solve(&model, 1)?;
     let mean = model.reaction(&state, "right")[0] / (problem.thickness * HALF);
     let (cell, local) = mesh.locate([0.0, radius]);
     let gradient = mesh.gradient_at(&state.displacement, cell, local);

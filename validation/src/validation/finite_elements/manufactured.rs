@@ -16,7 +16,7 @@ use crate::problem::{BoundaryProblem, Support};
 use crate::results::{Axis, Line, LineChart, PALETTE, Stroke};
 use crate::solve::State;
 use crate::validation::case::{
-    Check, Computation, Figure, Outcome, Progress, check, line, section,
+    Check, Computation, Figure, Outcome, Progress, Squares, check, line, section,
 };
 
 /// For messages.
@@ -185,10 +185,10 @@ impl Solved {
         let field = Field::new(amplitude);
         let problem = sheet();
         let energy = problem.finite_elements(&mesh);
-        let mut model = problem.on(&mesh, &energy)?;
+        let mut model = problem.on(&mesh, &energy)?.named(NAME);
         model.impose_field("boundary", |point| field.displacement(point));
         model.add_forces(&forces(&mesh, &problem, field));
-        let state = solve(&model, NAME, 1)?;
+        let state = solve(&model, 1)?;
         drop(model);
         Ok(Self { mesh, state, field })
     }
@@ -218,14 +218,13 @@ impl Pull {
         let field = Field::new(amplitude);
         let sides = ["left", "right", "bottom", "top"];
         let problem = BoundaryProblem {
-            regions: Vec::new(),
             supports: sides.map(|side| (side.into(), Support::Roller)).into(),
             ..sheet()
         };
         let energy = problem.finite_elements(&mesh);
-        let mut model = problem.on(&mesh, &energy)?;
+        let mut model = problem.on(&mesh, &energy)?.named(NAME);
         model.add_forces(&forces(&mesh, &problem, field));
-        let state = solve(&model, NAME, 1)?;
+        let state = solve(&model, 1)?;
         let influence = model.influence(&state, "right", 0);
         let influence = influence.map_err(|fault| Error::Solve {
             model: NAME.to_owned(),
@@ -276,26 +275,6 @@ impl Errors {
             l2: values.relative(),
             h1: gradients.relative(),
         })
-    }
-}
-
-/// Squares of errors and of exact values, integrated over the sheet.
-#[derive(Default)]
-struct Squares {
-    error: f64,
-    size: f64,
-}
-
-impl Squares {
-    fn add(&mut self, volume: f64, computed: &[f64], exact: &[f64]) {
-        for (computed, exact) in computed.iter().zip(exact) {
-            self.error += volume * (computed - exact).powi(2);
-            self.size += volume * exact.powi(2);
-        }
-    }
-
-    fn relative(&self) -> f64 {
-        (self.error / self.size).sqrt()
     }
 }
 

@@ -70,9 +70,9 @@ fn patch(shape: CellShape, cells: [usize; 2]) -> Result<f64, Error> {
     let field = |[x, y]: [f64; 2]| [0.3 * x + 0.1 * y, -0.05 * x - 0.2 * y];
     let problem = sheet();
     let energy = problem.finite_elements(&mesh);
-    let mut model = problem.on(&mesh, &energy)?;
+    let mut model = problem.on(&mesh, &energy)?.named("patch test");
     model.impose_field("boundary", field);
-    let state = solve(&model, "patch test", 2)?;
+    let state = solve(&model, 2)?;
     Ok(largest_error(&mesh, &state.displacement, field))
 }
 
@@ -100,8 +100,8 @@ fn homogeneous(
     }
     let problem = held(&supports);
     let energy = problem.finite_elements(&mesh);
-    let model = problem.on(&mesh, &energy)?;
-    let state = solve(&model, mode.name(), 4)?;
+    let model = problem.on(&mesh, &energy)?.named(mode.name());
+    let state = solve(&model, 4)?;
     let field = largest_error(&mesh, &state.displacement, |[px, py]| [x * px, across * py]);
     let force = model.reaction(&state, "right")[0];
     let actual = force / (problem.thickness * SIZE[1]);
@@ -114,10 +114,10 @@ fn simple_shear(shape: CellShape, cells: [usize; 2], amount: f64) -> Result<f64,
     let mesh = distorted(SIZE, cells, shape);
     let problem = sheet();
     let energy = problem.finite_elements(&mesh);
-    let mut model = problem.on(&mesh, &energy)?;
+    let mut model = problem.on(&mesh, &energy)?.named("simple shear");
     let field = |[_, y]: [f64; 2]| [amount * y, 0.0];
     model.impose_field("boundary", field);
-    let state = solve(&model, "simple shear", 2)?;
+    let state = solve(&model, 2)?;
     let inside = largest_error(&mesh, &state.displacement, field);
     // The stress of all cells: forces on the sides share their corners.
     let exact = stress(&*problem.law, [0.0, amount, 0.0, 0.0])[1];
@@ -148,8 +148,8 @@ fn turn(shape: CellShape, cells: [usize; 2]) -> Result<f64, Error> {
     let support = Support::Rotation { centre, angle };
     problem.supports.push(("left".into(), support));
     let energy = problem.finite_elements(&mesh);
-    let model = problem.on(&mesh, &energy)?;
-    let state = solve(&model, "rigid turn", 4)?;
+    let model = problem.on(&mesh, &energy)?.named("rigid turn");
+    let state = solve(&model, 4)?;
     let exact = |[x, y]: [f64; 2]| {
         let (dx, dy) = (x - centre[0], y - centre[1]);
         [-dy - dx, dx - dy]

@@ -161,8 +161,8 @@ impl Inflated {
         let load = Load::Pressure(pressure);
         problem.loads.push(("inside".into(), load));
         let energy = problem.finite_elements(mesh);
-        let model = problem.on(mesh, &energy)?;
-        let state = solve(&model, "ring", steps)?;
+        let model = problem.on(mesh, &energy)?.named("ring");
+        let state = solve(&model, steps)?;
         let reactions = model.reactions(&state);
         let force = |group, axis: usize| reactions.at_group(group).force[axis];
         Ok(Self {

@@ -39,28 +39,16 @@ impl Truth {
     pub fn new(mesh: Mesh, plate: &ClampedPlate, stretch: f64) -> Result<Self, Error> {
         let [low, high] = mesh.bounding_box();
         let clamp = |x: f64| Support::Displacement([Some(x), Some(0.0)]);
-        let problem = BoundaryProblem {
-            thickness: plate.thickness,
-            law: Arc::clone(&plate.law),
-            regions: Vec::new(),
-            supports: vec![
-                ("left".into(), clamp(0.0)),
-                ("right".into(), clamp(stretch * (high[0] - low[0]))),
-            ],
-            loads: Vec::new(),
-        };
+        let clamps = vec![
+            ("left".into(), clamp(0.0)),
+            ("right".into(), clamp(stretch * (high[0] - low[0]))),
+        ];
+        let problem = BoundaryProblem::supported(plate.thickness, Arc::clone(&plate.law), clamps);
         let energy = problem.finite_elements(&mesh);
-        let discretised = problem.on(&mesh, &energy);
-        let discretised = discretised?;
-        let states = discretised.solve(&[1.0], NEWTON, &|_| ());
-        let mut states = states.map_err(|end| Error::Solve {
-            model: "finite elements".into(),
-            step: end.describe(),
-            fault: end.fault,
-        })?;
-        let state = states.remove(0);
-        let force = discretised.reaction(&state, "right")[0];
-        drop(discretised);
+        let model = problem.on(&mesh, &energy)?.named("finite elements");
+        let state = model.reach(&[1.0], NEWTON)?;
+        let force = model.reaction(&state, "right")[0];
+        drop(model);
         Ok(Self {
             law: problem.law,
             mesh,

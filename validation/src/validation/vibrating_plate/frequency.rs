@@ -57,14 +57,10 @@ impl Longitudinal {
 fn equivalent_length(model: &Model, held: &[bool]) -> Result<f64, Error> {
     let traction = 1.0;
     let problem = BoundaryProblem {
-        thickness: THICKNESS,
-        law: law(),
-        regions: Vec::new(),
-        supports: Vec::new(),
         loads: vec![("right".into(), Load::Traction([traction, 0.0]))],
+        ..BoundaryProblem::supported(THICKNESS, law(), Vec::new())
     };
-    let forces = problem.dead_forces(model.mesh);
-    let forces = forces?;
+    let forces = problem.dead_forces(model.mesh)?;
     let rest = vec![0.0; held.len()];
     let field = Newton::new(model.energy, held).and_then(|mut newton| {
         let describe = |_| String::new();

@@ -105,13 +105,7 @@ impl MountedSheet {
                 supports.extend(groups.map(|group| (group, support)));
             }
         }
-        BoundaryProblem {
-            thickness: self.mounting.thickness,
-            law: Arc::clone(law),
-            regions: Vec::new(),
-            supports,
-            loads: Vec::new(),
-        }
+        BoundaryProblem::supported(self.mounting.thickness, Arc::clone(law), supports)
     }
 
     /// λ − 1 between the markers at the corners of a square in the middle along both axes.

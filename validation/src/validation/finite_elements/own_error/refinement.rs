@@ -76,8 +76,8 @@ impl Round {
             ("right", [Some(STRETCH * SIZE[0]), Some(0.0)]),
         ]);
         let energy = problem.finite_elements(&mesh);
-        let model = problem.on(&mesh, &energy)?;
-        let state = solve(&model, "local refinement", 1)?;
+        let model = problem.on(&mesh, &energy)?.named("local refinement");
+        let state = solve(&model, 1)?;
         let force = model.reaction(&state, "right")[0];
         Ok(Self {
             triangles,
