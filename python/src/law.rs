@@ -7,6 +7,7 @@ use gelbench::material::PlaneState;
 use gelbench::material::sheet::{Kinematics, PlaneTensor, SheetResponse};
 use gelbench::material::{Code, CodeLaw};
 use gelbench::material::{HyperelasticLaw, Softening, Volume};
+use gelbench_mechanics::forwarded;
 use gelbench_mechanics::material::law::TensionResponse;
 use gelbench_mechanics::material::sheet::COMPONENTS;
 
@@ -50,10 +51,6 @@ impl HyperelasticLaw for Watched {
         self.law.tension(direction, strain)
     }
 
-    fn biaxial(&self, strains: [f64; 2]) -> [f64; 2] {
-        self.law.biaxial(strains)
-    }
-
     fn stresses(&self, gradients: [&[f64]; 4], stresses: [&mut [f64]; 4]) -> bool {
         self.watch.check();
         self.law.stresses(gradients, stresses)
@@ -69,75 +66,28 @@ impl HyperelasticLaw for Watched {
         self.law.responses(gradients, responses, tangents)
     }
 
-    fn in_code(&self, code: Code, bulk_modulus: f64) -> Option<CodeLaw> {
-        self.law.in_code(code, bulk_modulus)
-    }
-
-    fn softening(&self) -> Option<Softening> {
-        self.law.softening()
-    }
-
-    fn volume_ratio(&self, kinematics: &Kinematics) -> f64 {
-        self.law.volume_ratio(kinematics)
-    }
-
-    fn thickness_stretch(&self, kinematics: &Kinematics) -> f64 {
-        self.law.thickness_stretch(kinematics)
-    }
-
-    fn thickness_gradient(&self, kinematics: &Kinematics) -> PlaneTensor {
-        self.law.thickness_gradient(kinematics)
-    }
-
-    fn thickness_stress(&self, kinematics: &Kinematics) -> f64 {
-        self.law.thickness_stress(kinematics)
-    }
-
-    fn cauchy_stress(&self, kinematics: &Kinematics, stress: &PlaneTensor) -> [f64; 3] {
-        self.law.cauchy_stress(kinematics, stress)
-    }
-
-    fn plane_state(&self) -> PlaneState {
-        self.law.plane_state()
-    }
-
-    fn is_for_small_strains(&self) -> bool {
-        self.law.is_for_small_strains()
-    }
-
-    fn in_plane_strain(&self) -> Option<Arc<dyn HyperelasticLaw>> {
-        self.law.in_plane_strain()
-    }
-
-    fn bulk_modulus(&self) -> Option<f64> {
-        self.law.bulk_modulus()
-    }
-
     fn with_volume(self: Arc<Self>, volume: Volume) -> Option<Arc<dyn HyperelasticLaw>> {
         Arc::clone(&self.law).with_volume(volume)
     }
 
-    fn swelling_stretch(&self) -> f64 {
-        self.law.swelling_stretch()
-    }
-
-    fn statements(&self) -> Vec<(&'static str, String)> {
-        self.law.statements()
-    }
-
-    fn is_objective(&self) -> bool {
-        self.law.is_objective()
-    }
-
-    fn is_isotropic(&self) -> bool {
-        self.law.is_isotropic()
-    }
-
-    fn shear_modulus(&self) -> f64 {
-        self.law.shear_modulus()
-    }
-
-    fn youngs_modulus(&self) -> f64 {
-        self.law.youngs_modulus()
+    forwarded! { law:
+        fn biaxial(strains: [f64; 2]) -> [f64; 2];
+        fn in_code(code: Code, bulk_modulus: f64) -> Option<CodeLaw>;
+        fn softening() -> Option<Softening>;
+        fn volume_ratio(kinematics: &Kinematics) -> f64;
+        fn thickness_stretch(kinematics: &Kinematics) -> f64;
+        fn thickness_gradient(kinematics: &Kinematics) -> PlaneTensor;
+        fn thickness_stress(kinematics: &Kinematics) -> f64;
+        fn cauchy_stress(kinematics: &Kinematics, stress: &PlaneTensor) -> [f64; 3];
+        fn plane_state() -> PlaneState;
+        fn is_for_small_strains() -> bool;
+        fn in_plane_strain() -> Option<Arc<dyn HyperelasticLaw>>;
+        fn bulk_modulus() -> Option<f64>;
+        fn swelling_stretch() -> f64;
+        fn statements() -> Vec<(&'static str, String)>;
+        fn is_objective() -> bool;
+        fn is_isotropic() -> bool;
+        fn shear_modulus() -> f64;
+        fn youngs_modulus() -> f64;
     }
 }

@@ -180,6 +180,16 @@ pub trait HyperelasticLaw: Send + Sync + std::fmt::Debug {
     }
 }
 
+/// Methods of a law that are those of the law in a field of it: `forwarded! { virgin: fn bulk_modulus() -> Option<f64>; }`.
+#[macro_export]
+macro_rules! forwarded {
+    ($within:ident: $(fn $method:ident($($given:ident: $kind:ty),*) -> $result:ty;)*) => {
+        $(fn $method(&self, $($given: $kind),*) -> $result {
+            self.$within.$method($($given),*)
+        })*
+    };
+}
+
 /// Energy, stress and slope of a tension curve at one stretch.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TensionResponse {

@@ -7,6 +7,7 @@ use super::law::{HyperelasticLaw, TensionResponse};
 use super::sheet::{Kinematics, PlaneState, PlaneTensor, SheetResponse};
 use super::softening::Softening;
 use crate::error::Error;
+use crate::forwarded;
 
 /// A softening law in which all points have had the same largest energy, as in a load step that does not exceed it.
 #[derive(Clone, Debug)]
@@ -46,34 +47,10 @@ impl HyperelasticLaw for SoftenedLaw {
         self.softening.tension(virgin, self.largest_energy)
     }
 
-    fn volume_ratio(&self, kinematics: &Kinematics) -> f64 {
-        self.virgin.volume_ratio(kinematics)
-    }
-
-    fn thickness_stretch(&self, kinematics: &Kinematics) -> f64 {
-        self.virgin.thickness_stretch(kinematics)
-    }
-
-    fn thickness_gradient(&self, kinematics: &Kinematics) -> PlaneTensor {
-        self.virgin.thickness_gradient(kinematics)
-    }
-
     fn thickness_stress(&self, kinematics: &Kinematics) -> f64 {
         let (energy, _) = self.virgin.stress(kinematics);
         let [factor, _] = self.softening.factor(energy, self.largest_energy);
         factor * self.virgin.thickness_stress(kinematics)
-    }
-
-    fn cauchy_stress(&self, kinematics: &Kinematics, stress: &PlaneTensor) -> [f64; 3] {
-        self.virgin.cauchy_stress(kinematics, stress)
-    }
-
-    fn plane_state(&self) -> PlaneState {
-        self.virgin.plane_state()
-    }
-
-    fn is_for_small_strains(&self) -> bool {
-        self.virgin.is_for_small_strains()
     }
 
     fn in_plane_strain(&self) -> Option<Arc<dyn HyperelasticLaw>> {
@@ -81,10 +58,6 @@ impl HyperelasticLaw for SoftenedLaw {
             virgin: self.virgin.in_plane_strain()?,
             ..self.clone()
         }))
-    }
-
-    fn bulk_modulus(&self) -> Option<f64> {
-        self.virgin.bulk_modulus()
     }
 
     /// The law of the first loading: the softening is [`HyperelasticLaw::softening`]'s.
@@ -105,16 +78,17 @@ impl HyperelasticLaw for SoftenedLaw {
         all
     }
 
-    fn swelling_stretch(&self) -> f64 {
-        self.virgin.swelling_stretch()
-    }
-
-    fn is_objective(&self) -> bool {
-        self.virgin.is_objective()
-    }
-
-    fn is_isotropic(&self) -> bool {
-        self.virgin.is_isotropic()
+    forwarded! { virgin:
+        fn volume_ratio(kinematics: &Kinematics) -> f64;
+        fn thickness_stretch(kinematics: &Kinematics) -> f64;
+        fn thickness_gradient(kinematics: &Kinematics) -> PlaneTensor;
+        fn cauchy_stress(kinematics: &Kinematics, stress: &PlaneTensor) -> [f64; 3];
+        fn plane_state() -> PlaneState;
+        fn is_for_small_strains() -> bool;
+        fn bulk_modulus() -> Option<f64>;
+        fn swelling_stretch() -> f64;
+        fn is_objective() -> bool;
+        fn is_isotropic() -> bool;
     }
 }
 
