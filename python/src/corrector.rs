@@ -8,7 +8,7 @@ use gelbench::solve::{Inadmissible, SparseRows};
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 
-use crate::errors::{exception, input};
+use crate::errors::{choice, exception, input};
 use crate::running::{Watch, run};
 
 /// A sparse matrix by rows: begins of rows, columns, values.
@@ -148,19 +148,11 @@ const SOLVERS: [(&str, Solver); 5] = [
 
 impl Settings {
     fn read(&self) -> Result<CorrectorSettings, Error> {
-        let solver = SOLVERS.iter().find(|(name, _)| *name == self.solver);
-        let unknown = || {
-            let known = SOLVERS.map(|(name, _)| name).join(", ");
-            input(
-                format!("there is no solver `{}`", self.solver),
-                format!("use one of {known}"),
-            )
-        };
         Ok(CorrectorSettings {
             tolerance: self.tolerance,
             movement: self.movement,
             max_steps: self.max_steps,
-            solver: solver.ok_or_else(unknown)?.1,
+            solver: choice("solver", &self.solver, &SOLVERS)?,
         })
     }
 }

@@ -85,6 +85,16 @@ pub fn refused(message: impl Into<String>) -> Error {
     Error::Input(vec![Diagnostic::error("", message)])
 }
 
+/// The choice of a name.
+pub fn choice<T: Copy>(what: &str, name: &str, names: &[(&str, T)]) -> Result<T, Error> {
+    let entry = names.iter().find(|(known, _)| *known == name);
+    entry.map(|(_, choice)| *choice).ok_or_else(|| {
+        let known: Vec<_> = names.iter().map(|(known, _)| *known).collect();
+        let hint = format!("use one of {}", known.join(", "));
+        input(format!("there is no {what} `{name}`"), hint)
+    })
+}
+
 /// A fault of gelbench itself.
 pub fn internal(payload: &(dyn std::any::Any + Send)) -> PyErr {
     let text = payload

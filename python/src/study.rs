@@ -18,7 +18,7 @@ use gelbench_studies::studies::{ModelKind, plate};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
-use crate::errors::{exception, input, refused};
+use crate::errors::{choice, exception, input, refused};
 use crate::material::{MaterialCard, watched};
 use crate::results::Results;
 use crate::running::{Watch, run as run_watched};
@@ -30,16 +30,6 @@ pub fn budget(allow_large: bool) -> Budget {
         true => Budget::LARGE,
         false => Budget::USUAL,
     }
-}
-
-/// The model of a name.
-fn model_kind(name: &str) -> Result<ModelKind, Error> {
-    let entry = ModelKind::NAMES.iter().find(|(known, _)| *known == name);
-    entry.map(|(_, kind)| *kind).ok_or_else(|| {
-        let known = ModelKind::NAMES.map(|(known, _)| known);
-        let hint = format!("use one of {}", known.join(", "));
-        input(format!("there is no model `{name}`"), hint)
-    })
 }
 
 /// Cards in memory, by the names that a study has for them.
@@ -201,7 +191,8 @@ pub fn solve_sheet(
     progress: Option<Py<PyAny>>,
     allow_large: bool,
 ) -> PyResult<Solution> {
-    let kind = model_kind(model).map_err(|error| exception(py, &error))?;
+    let kind = choice("model", model, &ModelKind::NAMES);
+    let kind = kind.map_err(|error| exception(py, &error))?;
     let work = |watch: &Arc<Watch>| {
         let Loaded {
             made: read,

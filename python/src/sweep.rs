@@ -15,7 +15,7 @@ use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
-use crate::errors::{exception, input, refused};
+use crate::errors::{choice, exception, input, refused};
 use crate::fields::frozen;
 use crate::running::run as run_watched;
 use crate::study::budget;
@@ -63,6 +63,8 @@ pub fn text_of_file(py: Python<'_>, path: PathBuf) -> PyResult<String> {
     read.map_err(|error| exception(py, &error))
 }
 
+const METHODS: [(&str, Method); 2] = [("sobol", Method::Sobol), ("random", Method::Random)];
+
 /// A study with what is varied.
 #[pyclass(frozen, module = "gelbench._core")]
 pub struct Sweep {
@@ -103,7 +105,7 @@ impl Sweep {
                 fitted: fitted.transpose().map_err(one)?,
                 sampling: Sampling {
                     samples,
-                    method: drawing(method)?,
+                    method: choice("method", method, &METHODS)?,
                     seed,
                 },
                 study: BaseStudy {
@@ -126,14 +128,8 @@ impl Sweep {
 
     /// What is set in every run: heads with units, and the values.
     fn settings<'py>(&self, py: Python<'py>) -> PyResult<Vec<(String, Bound<'py, PyAny>)>> {
-        let mut columns = Vec::new();
-        for (place, key) in self.sweep.keys().into_iter().enumerate() {
-            let settings: Vec<&Setting> =
-                self.runs.iter().map(|run| &run.settings[place]).collect();
-            let unit = settings.first().map_or("", |setting| setting.unit());
-            columns.push((sweep::headed(&key, unit), values(py, &settings)?));
-        }
-        Ok(columns)
+        let runs = self.runs.iter().map(|run| &run.settings[..]);
+        columns(py, &self.sweep.keys(), runs)
     }
 
     /// Computes the runs, or those of one part of so many, or puts the parts in a folder together.
@@ -207,15 +203,18 @@ fn share(part: Option<(usize, usize)>, join: Option<usize>) -> Result<Share, Err
     }
 }
 
-fn drawing(name: &str) -> Result<Method, Error> {
-    match name {
-        "sobol" => Ok(Method::Sobol),
-        "random" => Ok(Method::Random),
-        other => {
-            let message = format!("there is no method `{other}`");
-            Err(input(message, "use one of sobol, random"))
-        }
-    }
+/// What is set in every run: heads with units, and the values.
+fn columns<'py, 'a>(
+    py: Python<'py>,
+    keys: &[String],
+    runs: impl Iterator<Item = &'a [Setting]> + Clone,
+) -> PyResult<Vec<(String, Bound<'py, PyAny>)>> {
+    let column = |(place, key): (usize, &String)| {
+        let settings: Vec<&Setting> = runs.clone().map(|settings| &settings[place]).collect();
+        let unit = settings.first().map_or("", |setting| setting.unit());
+        Ok((sweep::headed(key, unit), values(py, &settings)?))
+    };
+    keys.iter().enumerate().map(column).collect()
 }
 
 /// Numbers as an array, texts as a list.
@@ -327,14 +326,8 @@ impl SweepTable {
 
     /// What was set: heads with units, and the values.
     fn settings<'py>(&self, py: Python<'py>) -> PyResult<Vec<(String, Bound<'py, PyAny>)>> {
-        let mut columns = Vec::new();
-        for (place, key) in self.keys.iter().enumerate() {
-            let settings: Vec<&Setting> =
-                self.rows.iter().map(|row| &row.settings[place]).collect();
-            let unit = settings.first().map_or("", |setting| setting.unit());
-            columns.push((sweep::headed(key, unit), values(py, &settings)?));
-        }
-        Ok(columns)
+        let rows = self.rows.iter().map(|row| &row.settings[..]);
+        columns(py, &self.keys, rows)
     }
 
     /// The figures by their names, NaN where a run has none.
