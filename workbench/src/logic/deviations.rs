@@ -4,7 +4,7 @@ use gelbench::mesh::Mesh;
 use gelbench_mechanics::mesh::NodalField;
 use gelbench_report::compare::area_weighted_percent;
 
-use super::engine::Solved;
+use super::engine::{Solved, between_grips};
 use super::scene::{Grip, Scene};
 
 /// Deviation of one model from the finite elements.
@@ -26,7 +26,8 @@ impl Deviation {
             return None;
         }
         let areas = lattice.corner_areas();
-        let linear = linear_between_grips(scene, lattice);
+        let grips = [Grip::default(), scene.grip];
+        let linear = between_grips(lattice, [scene.size[0], scene.axis()], grips);
         let departure = expected.weighted_distance(&linear, &areas);
         Some(Self {
             displacement: area_weighted_percent(lattice, computed, expected),
@@ -42,14 +43,6 @@ fn force_percent([x, y]: [f64; 2], [x0, y0]: [f64; 2]) -> f64 {
         true => 100.0 * (x / x0 - 1.0),
         false => 100.0 * (x - x0).hypot(y - y0) / x0.hypot(y0),
     }
-}
-
-/// The displacement of the right grip times X over the length, in mm.
-fn linear_between_grips(scene: &Scene, lattice: &Mesh) -> Vec<f64> {
-    let lines = scene.grip.lines(scene.axis());
-    let at =
-        |position: &[f64; 2]| lines.map(|line| position[0] / scene.size[0] * line.at(*position));
-    lattice.nodes.iter().flat_map(at).collect()
 }
 
 #[cfg(test)]

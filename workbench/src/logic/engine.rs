@@ -25,6 +25,7 @@ mod plate;
 pub use bodies::Bodies;
 pub use bodies::meshes;
 use bodies::{Body, LastBodies};
+pub use path::between_grips;
 
 /// What is to be solved.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
@@ -220,20 +221,9 @@ fn multipliers(
     });
     computed.map_err(|fault| Error::Solve {
         model: "multipliers".into(),
-        step: grip.describe(),
+        step: grip.to_string(),
         fault,
     })
-}
-
-impl Grip {
-    /// `(45, 0) mm turned by 2°`, for messages.
-    pub fn describe(self) -> String {
-        let [x, y] = self.displacement;
-        format!(
-            "({x:.3}, {y:.3}) mm turned by {:.2}°",
-            self.angle.to_degrees()
-        )
-    }
 }
 
 #[cfg(test)]

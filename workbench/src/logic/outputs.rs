@@ -12,6 +12,7 @@ use gelbench::kinds;
 use gelbench::output::{self, vtk};
 use gelbench::results::{Drawing, Grid, Sheet};
 use gelbench::studies::Progress;
+use gelbench_base::document::name_of;
 use gelbench_report::results::{FieldFigure, LineChart, Panel, PictureFormat, PictureStyle};
 
 use super::background::Worker;
@@ -20,26 +21,9 @@ use super::field::{self, FieldQuestion};
 use super::scene::{Colour, Model, Scene};
 use super::studies::{NamedFile, StudyQuestion, paths};
 
-/// The format of a picture.
-#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, Serialize)]
-pub enum Format {
-    /// Pixels.
-    Png,
-    /// Lines as curves and words as text.
-    Svg,
-}
-
-impl Format {
-    /// Both with their names.
-    pub const ALL: [(&'static str, Self); 2] = [("PNG", Self::Png), ("SVG", Self::Svg)];
-
-    fn ending(self) -> &'static str {
-        match self {
-            Self::Png => "png",
-            Self::Svg => "svg",
-        }
-    }
-}
+/// The formats that are offered.
+pub const FORMATS: [(&str, PictureFormat); 2] =
+    [("PNG", PictureFormat::Png), ("SVG", PictureFormat::Svg)];
 
 /// The field of a model as it is shown: ux, uy of node after node in mm, and what colours the nodes.
 pub type ShownField = (Model, Vec<f64>, Vec<f64>);
@@ -48,7 +32,7 @@ pub type ShownField = (Model, Vec<f64>, Vec<f64>);
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub enum Wanted {
     /// A picture under a name without its ending.
-    Picture(String, Drawing, Format),
+    Picture(String, Drawing, PictureFormat),
     /// The lines of a chart as a table, under a name without its ending.
     Lines(String, LineChart),
     /// A sheet: the fields of its models, with the stresses and strains that follow, as VTK files.
@@ -56,7 +40,7 @@ pub enum Wanted {
     /// Places, displacements and colours of the nodes of its models as tables.
     Nodes(Scene, Vec<ShownField>),
     /// A sheet as it is shown.
-    SheetPicture(Scene, Vec<ShownField>, Format),
+    SheetPicture(Scene, Vec<ShownField>, PictureFormat),
     /// Everything that `gelbench correct` writes.
     Correction(Box<FieldQuestion>),
     /// Everything that `gelbench run` writes.
@@ -136,13 +120,10 @@ fn stem(file: Option<&NamedFile>) -> &str {
     name.rsplit_once('.').map_or(name, |(stem, _)| stem)
 }
 
-fn picture(name: &str, drawing: &Drawing, format: Format) -> Result<NamedFile, Fault> {
-    let kind = match format {
-        Format::Png => PictureFormat::Png,
-        Format::Svg => PictureFormat::Svg,
-    };
-    match output::picture(drawing, kind, &PictureStyle::default()) {
-        Ok(bytes) => Ok((format!("{name}.{}", format.ending()), bytes)),
+fn picture(name: &str, drawing: &Drawing, format: PictureFormat) -> Result<NamedFile, Fault> {
+    let ending = name_of(&PictureFormat::NAMES, format);
+    match output::picture(drawing, format, &PictureStyle::default()) {
+        Ok(bytes) => Ok((format!("{name}.{ending}"), bytes)),
         Err(fault) => Err(Fault {
             message: format!("the picture cannot be drawn: {fault}"),
             advice: "its numbers can be saved as a table".to_owned(),
@@ -236,7 +217,7 @@ fn figure(mut bodies: Bodies, scene: &Scene, fields: &[ShownField]) -> Result<Fi
         let value = |node: usize| values.get(node).copied().unwrap_or(f64::NAN);
         panels.push(Panel::at_nodes(model.name(), mesh, displacement, &value));
     }
-    let title = format!("The grip at {}", scene.grip.describe());
+    let title = format!("The grip at {}", scene.grip);
     Ok(FieldFigure::new(title, scene.look.colour.name(), panels))
 }
 

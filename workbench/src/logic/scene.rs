@@ -2,7 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
+pub use gelbench::corrector::plate::KnownConditions as Known;
 use gelbench::material::registry::CARDS;
+pub use gelbench_mechanics::problem::RigidMotion as Grip;
+use gelbench_report::results::PALETTE;
 
 /// A sheet between two grips, and how it is shown.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
@@ -60,15 +63,6 @@ pub enum Outline {
     },
 }
 
-/// A rigid motion of the right grip from rest.
-#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Serialize)]
-pub struct Grip {
-    /// Displacement of its middle in mm.
-    pub displacement: [f64; 2],
-    /// Turn about its middle in rad, from X to Y.
-    pub angle: f64,
-}
-
 /// The three models.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, Serialize)]
 pub enum Model {
@@ -120,29 +114,6 @@ pub struct Look {
     pub known: Known,
 }
 
-/// What the corrector knows of the boundary of a plate: T.
-#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, Serialize)]
-pub struct Known {
-    /// Where the grips are.
-    pub grips: bool,
-    /// That no traction acts on the long edges.
-    pub free_edges: bool,
-}
-
-impl Known {
-    /// Everything.
-    pub const ALL: Self = Self {
-        grips: true,
-        free_edges: true,
-    };
-}
-
-impl Default for Known {
-    fn default() -> Self {
-        Self::ALL
-    }
-}
-
 impl Model {
     /// All of them, from the crudest to the reference.
     pub const ALL: [Self; 3] = [Self::Springs, Self::Corrected, Self::Elements];
@@ -154,6 +125,15 @@ impl Model {
             Self::Corrected => "corrected springs",
             Self::Elements => "finite elements",
         }
+    }
+
+    /// The colour of its lines.
+    pub fn colour(self) -> [u8; 3] {
+        PALETTE[match self {
+            Self::Springs => 1,
+            Self::Corrected => 0,
+            Self::Elements => 2,
+        }]
     }
 }
 

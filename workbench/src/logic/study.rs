@@ -132,33 +132,6 @@ impl Scene {
     }
 }
 
-impl Grip {
-    /// The displacements of the right grip's points as they are at rest, linear in Y:
-    ///
-    /// ```text
-    /// ux = dx − sin α (Y − Y₀),   uy = dy + (cos α − 1)(Y − Y₀)                          [mm]
-    /// ```
-    pub fn lines(self, axis: f64) -> [Linear; 2] {
-        let (sine, cosine) = self.angle.sin_cos();
-        let [x, y] = self.displacement;
-        [(x, -sine), (y, cosine - 1.0)].map(|(middle, slope)| Linear {
-            at_origin: middle - slope * axis,
-            slope: [0.0, slope],
-        })
-    }
-
-    /// The rigid motion that such displacements are; `None` where they are none.
-    fn of_lines([x, y]: [Linear; 2]) -> Option<Self> {
-        let angle = (-x.slope[1]).atan2(1.0 + y.slope[1]);
-        let rigid = x.slope[1].hypot(1.0 + y.slope[1]) - 1.0;
-        let straight = x.slope[0] == 0.0 && y.slope[0] == 0.0;
-        (straight && rigid.abs() < 1e-9).then_some(Self {
-            displacement: [x.at_origin, y.at_origin],
-            angle,
-        })
-    }
-}
-
 /// `12 mm + 0.1 * Y`, as studies take it.
 fn written(line: &Linear) -> String {
     let slope = line.slope[1];

@@ -4,6 +4,7 @@ use eframe::egui::{ComboBox, DragValue, Margin, RichText, Slider, Ui};
 
 use gelbench::material::registry::CARDS;
 
+use super::grip::within;
 use crate::logic::scene::{CardFile, Colour, Layout, Model, Outline, Scene};
 use crate::logic::table::Table;
 
@@ -158,7 +159,7 @@ fn grip(ui: &mut Ui, scene: &mut Scene, hold: &mut Hold) {
         scene.grip.displacement[1] = 0.0;
         scene.grip.angle = 0.0;
     }
-    scene.grip = scene.grip.within(scene);
+    scene.grip = within(scene.grip, scene);
 }
 
 fn look(ui: &mut Ui, scene: &mut Scene) {

@@ -3,18 +3,18 @@
 use gelbench::results::Drawing;
 use gelbench_report::results::LineChart;
 
-use crate::logic::outputs::{Format, Wanted};
+use crate::logic::outputs::{FORMATS, Wanted};
 
 /// An offer: its name, and what goes out.
 pub type Offer = (String, Wanted);
 
 /// A picture in every format; `what` is in the names of the offers, `name` in that of the file.
 pub fn pictures(what: &str, name: &str, drawing: &Drawing) -> Vec<Offer> {
-    let offer = |(format, kind): (&str, Format)| {
+    let offer = |(format, kind)| {
         let wanted = Wanted::Picture(name.to_owned(), drawing.clone(), kind);
         (format!("{what} as {format}"), wanted)
     };
-    Format::ALL.map(offer).into()
+    FORMATS.map(offer).into()
 }
 
 /// A chart as a table, and as a picture in every format.

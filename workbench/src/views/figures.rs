@@ -2,7 +2,7 @@
 
 use eframe::egui::{Grid, RichText, Ui};
 
-use gelbench_report::results::{Axis, Finding, Line, LineChart, PALETTE, Stroke, from_rest};
+use gelbench_report::results::{Axis, Finding, Line, LineChart, Stroke, from_rest};
 
 use crate::logic::engine::Fault;
 use crate::logic::scene::Model;
@@ -12,18 +12,13 @@ use crate::logic::table::Table;
 pub fn curve(table: &Table) -> LineChart {
     let shown = |model: &Model| table.scene().look.models[*model as usize];
     let line = |model: Model| {
-        let colour = PALETTE[match model {
-            Model::Springs => 1,
-            Model::Corrected => 0,
-            Model::Elements => 2,
-        }];
         let mut points = table.curve(model);
         // What is only stretched has no force at rest.
         let grip = table.scene().grip;
         if grip.displacement[1] == 0.0 && grip.angle == 0.0 && !points.is_empty() {
             points = from_rest(points);
         }
-        Line::new(model.name(), points, colour, Stroke::Points)
+        Line::new(model.name(), points, model.colour(), Stroke::Points)
     };
     let lines = Model::ALL.into_iter().filter(shown).map(line).collect();
     let x = Axis::linear("stretch [–]");

@@ -42,18 +42,16 @@ const SHORTEST: f64 = -0.95;
 const LONGEST: f64 = 10.0;
 const MOST_TURN: f64 = std::f64::consts::FRAC_PI_2;
 
-impl Grip {
-    /// The same within what is possible for a sheet.
-    pub fn within(self, scene: &Scene) -> Self {
-        let length = scene.size[0];
-        let [x, y] = self.displacement;
-        Self {
-            displacement: [
-                x.clamp(SHORTEST * length, LONGEST * length),
-                y.clamp(-LONGEST * length, LONGEST * length),
-            ],
-            angle: self.angle.clamp(-MOST_TURN, MOST_TURN),
-        }
+/// A place of the grip within what is possible for a sheet.
+pub fn within(grip: Grip, scene: &Scene) -> Grip {
+    let length = scene.size[0];
+    let [x, y] = grip.displacement;
+    Grip {
+        displacement: [
+            x.clamp(SHORTEST * length, LONGEST * length),
+            y.clamp(-LONGEST * length, LONGEST * length),
+        ],
+        angle: grip.angle.clamp(-MOST_TURN, MOST_TURN),
     }
 }
 
@@ -91,7 +89,7 @@ pub fn show(ui: &Ui, scene: &Scene, view: View, name: &str) -> Held {
     let to = moved(ui, &pulled, view, grip).or_else(|| turn(ui, &turned, view.at(middle), grip));
     let to = to.or_else(|| by_keys(ui, &pulled, id, scene));
     Held {
-        to: to.map(|to| to.within(scene)),
+        to: to.map(|to| within(to, scene)),
         holding: pulled.dragged() || turned.dragged(),
         released: pulled.drag_stopped() || turned.drag_stopped(),
         at: view.at(middle),

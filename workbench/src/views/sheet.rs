@@ -242,11 +242,7 @@ fn room(scene: &Scene) -> [f64; 2] {
 
 /// The colour of a model's lines, in charts and where models lie over each other.
 pub fn model_colour(model: Model) -> Color32 {
-    let [r, g, b] = gelbench_report::results::PALETTE[match model {
-        Model::Springs => 1,
-        Model::Corrected => 0,
-        Model::Elements => 2,
-    }];
+    let [r, g, b] = model.colour();
     Color32::from_rgb(r, g, b)
 }
 

@@ -6,6 +6,8 @@
 //! | T: grips | on the short sides | known displacement in mm | η in mm |
 //! | T: traction-free edges | on the long sides, without corners | balance of forces in N | η in mm²/N |
 
+use serde::{Deserialize, Serialize};
+
 use super::climb::{Climb, Provenance};
 use super::condition::{Condition, Equilibrium, Linear};
 pub use super::specimen::EQUILIBRIUM;
@@ -24,7 +26,7 @@ pub const GRIPS: &str = "grips";
 pub const FREE_EDGES: &str = "traction-free edges";
 
 /// Which of the known conditions T are imposed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, Serialize)]
 pub struct KnownConditions {
     /// The displacement of the grips.
     pub grips: bool,
@@ -38,6 +40,12 @@ impl KnownConditions {
         grips: true,
         free_edges: true,
     };
+}
+
+impl Default for KnownConditions {
+    fn default() -> Self {
+        Self::ALL
+    }
 }
 
 /// A corrected plate at one stretch.

@@ -2,8 +2,12 @@
 
 use std::fmt;
 
+use serde::{Deserialize, Serialize};
+
+use crate::units::Linear;
+
 /// A rigid motion of a grip in its plane.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Serialize)]
 pub struct RigidMotion {
     /// Displacement of the grip's middle in mm.
     pub displacement: [f64; 2],
@@ -47,6 +51,31 @@ impl RigidMotion {
             x - across * sine - lost * along,
             y + along * sine - lost * across,
         ]
+    }
+
+    /// The displacements of the points on a line across whose middle has Y₀ = `axis`, linear in Y:
+    ///
+    /// ```text
+    /// ux = dx − sin α (Y − Y₀),   uy = dy + (cos α − 1)(Y − Y₀)                          [mm]
+    /// ```
+    pub fn lines(self, axis: f64) -> [Linear; 2] {
+        let (sine, cosine) = self.angle.sin_cos();
+        let [x, y] = self.displacement;
+        [(x, -sine), (y, cosine - 1.0)].map(|(middle, slope)| Linear {
+            at_origin: middle - slope * axis,
+            slope: [0.0, slope],
+        })
+    }
+
+    /// The rigid motion that such displacements are about Y = 0; `None` where they are none.
+    pub fn of_lines([x, y]: [Linear; 2]) -> Option<Self> {
+        let angle = (-x.slope[1]).atan2(1.0 + y.slope[1]);
+        let rigid = x.slope[1].hypot(1.0 + y.slope[1]) - 1.0;
+        let straight = x.slope[0] == 0.0 && y.slope[0] == 0.0;
+        (straight && rigid.abs() < 1e-9).then_some(Self {
+            displacement: [x.at_origin, y.at_origin],
+            angle,
+        })
     }
 }
 

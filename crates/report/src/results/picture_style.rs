@@ -1,5 +1,7 @@
 //! The style of all pictures.
 
+use serde::{Deserialize, Serialize};
+
 /// Formats, width and colours of pictures.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PictureStyle {
@@ -30,7 +32,7 @@ impl Default for PictureStyle {
 }
 
 /// The format of a picture. Animations are always PNG.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, Serialize)]
 pub enum PictureFormat {
     /// A bitmap.
     Png,

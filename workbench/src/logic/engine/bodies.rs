@@ -8,7 +8,7 @@ use gelbench::corrector::DifferenceScheme;
 use gelbench::error::Error;
 use gelbench::kinds;
 use gelbench::mass_spring::{LatticeSettings, MassSpring};
-use gelbench::material::{Card, HyperelasticLaw};
+use gelbench::material::HyperelasticLaw;
 use gelbench::mesh::{Mesh, Side};
 use gelbench::problem::{BoundaryProblem, ClampedPlate, Model as Problem, Support};
 use gelbench_mechanics::material::softened_law::check_memory;
@@ -127,7 +127,7 @@ impl Bodies {
     pub fn of(scene: &Scene) -> Result<Self, Error> {
         let specimen = specimen(scene)?;
         let [lattice, elements] = meshes_of(&specimen);
-        let card = Card::parse(&scene.card.name, &scene.card.reference(), &scene.card.text)?;
+        let card = scene.card.read()?;
         check_memory(&*card.law, "the workbench")?;
         let sheet = Sheet {
             law: Arc::clone(&card.law),
@@ -224,16 +224,9 @@ impl Sheet {
         let [x, y] = grip.lines(self.axis).map(Some);
         let clamp = Support::Displacement([Some(0.0); 2]);
         let moved = Support::LinearDisplacement([x, y]);
-        BoundaryProblem {
-            thickness: self.thickness,
-            law: Arc::clone(&self.law),
-            regions: Vec::new(),
-            supports: vec![
-                (Side::Left.name().to_owned(), clamp),
-                (Side::Right.name().to_owned(), moved),
-            ],
-            loads: Vec::new(),
-        }
+        let supports = [(Side::Left, clamp), (Side::Right, moved)];
+        let supports = supports.map(|(side, support)| (side.name().to_owned(), support));
+        BoundaryProblem::supported(self.thickness, Arc::clone(&self.law), supports.into())
     }
 }
 

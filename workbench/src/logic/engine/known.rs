@@ -1,7 +1,7 @@
 //! A plate corrected with a part of what is known at its boundary: what T decides.
 
 use gelbench::corrector::DifferenceScheme;
-use gelbench::corrector::plate::{KnownConditions, PlateCorrector};
+use gelbench::corrector::plate::PlateCorrector;
 use gelbench::error::Error;
 
 use super::bodies::Bodies;
@@ -28,12 +28,8 @@ impl Bodies {
         let springs = springs.displacement.clone();
         let scheme = DifferenceScheme::default();
         let corrector = PlateCorrector::new(&plate, &self.lattice, scheme, Default::default());
-        let conditions = KnownConditions {
-            grips: known.grips,
-            free_edges: known.free_edges,
-        };
         let stretch = grip.displacement[0] / sheet.length;
-        let corrected = corrector.correct(&springs, stretch, conditions)?;
+        let corrected = corrector.correct(&springs, stretch, known)?;
         Ok(corrected.state.displacement)
     }
 }

@@ -1,6 +1,7 @@
 //! From one place of the grip to another: Newton's method that goes on from the state before.
 
 use gelbench::error::Error;
+use gelbench::mesh::Mesh;
 use gelbench::problem::Model;
 use gelbench::solve::{Loading, NewtonSettings, Potential, State, follow};
 use gelbench_mechanics::solve::Attendance;
@@ -83,14 +84,14 @@ fn solve_path(
     let model = body.model(sheet, grip)?;
     let path = GripPath {
         held: model.held(),
-        change: between_grips(body, sheet, before, grip),
+        change: between_grips(&body.mesh, [sheet.length, sheet.axis], [before, grip]),
         model: &model,
         from,
     };
     let states = follow(&path, factors, NEWTON, Attendance::told(&|_| ()));
     let states = states.map_err(|end| Error::Solve {
         model: "sheet".into(),
-        step: format!("the grip at {}", grip.describe()),
+        step: format!("the grip at {grip}"),
         fault: end.fault,
     });
     Ok(states?
@@ -99,12 +100,13 @@ fn solve_path(
         .displacement)
 }
 
-/// What the grip's motion changes, falling to zero at the left grip in proportion to X.
-fn between_grips(body: &Body, sheet: &Sheet, before: Grip, grip: Grip) -> Vec<f64> {
-    let [earlier, later] = [before, grip].map(|grip| grip.lines(sheet.axis));
+/// What the grip's motion from one place to another changes, falling to zero at the left grip in proportion to X; for a sheet with some length
+/// and axis in mm.
+pub fn between_grips(mesh: &Mesh, [length, axis]: [f64; 2], grips: [Grip; 2]) -> Vec<f64> {
+    let [earlier, later] = grips.map(|grip| grip.lines(axis));
     let change = |position: &[f64; 2]| {
-        let share = position[0] / sheet.length;
+        let share = position[0] / length;
         [0, 1].map(|axis| share * (later[axis].at(*position) - earlier[axis].at(*position)))
     };
-    body.mesh.nodes.iter().flat_map(change).collect()
+    mesh.nodes.iter().flat_map(change).collect()
 }

@@ -6,7 +6,6 @@ use gelbench::corrector::DifferenceScheme;
 use gelbench::corrector::climb::{Climb, ClimbSettings, Grips, Interactive};
 use gelbench::error::Error;
 use gelbench::problem::ClampedPlate;
-use gelbench_mechanics::problem::RigidMotion;
 
 use crate::logic::scene::Grip;
 
@@ -43,12 +42,8 @@ impl Quick {
     /// # Errors
     /// [`Error::Solve`] when the field cannot follow; the state before is kept.
     pub fn move_to(&mut self, grip: Grip) -> Result<f64, Error> {
-        let right = RigidMotion {
-            displacement: grip.displacement,
-            angle: grip.angle,
-        };
         let grips = Grips {
-            right,
+            right: grip,
             ..Grips::default()
         };
         self.0
@@ -63,13 +58,6 @@ impl Quick {
 
     /// Where the right grip is.
     pub fn grip(&self) -> Grip {
-        let RigidMotion {
-            displacement,
-            angle,
-        } = self.0.with_dependent(|_, plate| plate.grips().right);
-        Grip {
-            displacement,
-            angle,
-        }
+        self.0.with_dependent(|_, plate| plate.grips().right)
     }
 }

@@ -57,12 +57,12 @@ fn sheets_of_every_shape_go_out_in_every_form() {
             let parts: Vec<f64> = last.split(',').map(|part| part.parse().unwrap()).collect();
             assert_eq!(parts[3..5], displacement[displacement.len() - 2..]);
         }
-        for (_, format) in Format::ALL {
+        for (_, format) in FORMATS {
             let picture = give(Wanted::SheetPicture(scene.clone(), fields.clone(), format));
             let (name, content) = &picture.files[0];
             let begin: &[u8] = match format {
-                Format::Png => b"\x89PNG",
-                Format::Svg => b"<svg",
+                PictureFormat::Svg => b"<svg",
+                _ => b"\x89PNG",
             };
             assert!(content.starts_with(begin), "{name}");
         }

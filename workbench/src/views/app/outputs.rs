@@ -3,7 +3,7 @@
 use eframe::egui::Ui;
 
 use super::{Tab, Workbench};
-use crate::logic::outputs::{Format, ShownField, Wanted};
+use crate::logic::outputs::{FORMATS, ShownField, Wanted};
 use crate::logic::scene::Model;
 use crate::views::exports::{self, Offer};
 use crate::views::figures;
@@ -72,7 +72,7 @@ impl Workbench {
             offers.push(("the fields as VTK".to_owned(), wanted));
             let wanted = Wanted::Nodes(scene.clone(), fields.clone());
             offers.push(("the nodes as CSV".to_owned(), wanted));
-            for (name, format) in Format::ALL {
+            for (name, format) in FORMATS {
                 let wanted = Wanted::SheetPicture(scene.clone(), fields.clone(), format);
                 offers.push((format!("the sheets as {name}"), wanted));
             }
