@@ -186,21 +186,17 @@ fn from_free<'a>(
 /// The nearest field with the edges that the data have left loaded as edges of the body.
 fn settle<'a>(
     task: &Task<'a>,
-    nearest_field: NearestField<'a>,
+    mut nearest_field: NearestField<'a>,
     mut edges: Vec<Edge>,
 ) -> Result<(NearestField<'a>, Vec<Edge>), Error> {
     let before = singular_corners(&edges);
     for edge in edges.iter_mut().filter(|edge| edge.tested) {
         edge.of_body = true;
     }
-    if singular_corners(&edges) == before {
-        Ok((nearest_field, edges))
-    } else {
-        Ok((
-            nearest_from(task, &edges, MOST_STEPS, &nearest_field)?,
-            edges,
-        ))
+    if singular_corners(&edges) != before {
+        nearest_field = nearest_from(task, &edges, MOST_STEPS, &nearest_field)?;
     }
+    Ok((nearest_field, edges))
 }
 
 /// The probability that noise alone increases the misfit by so much when a free edge is taken as free; where that is below a level, that noise

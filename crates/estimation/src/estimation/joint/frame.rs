@@ -139,16 +139,11 @@ impl<'a> Frame<'a> {
     ) -> Result<State, Error> {
         let nearest = self.nearest(law, from, settled)?;
         let (state, variances) = (nearest.state(), nearest.variances.clone());
-        let Reduced {
-            information,
-            score,
-            misfit,
-            ..
-        } = self.law_equations(nearest, law, None)?.reduced;
+        let reduced = self.law_equations(nearest, law, None)?.reduced;
         Ok(State {
-            information,
-            score,
-            misfit,
+            information: reduced.information,
+            score: reduced.score,
+            misfit: reduced.misfit,
             state,
             variances,
         })

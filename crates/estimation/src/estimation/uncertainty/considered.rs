@@ -58,9 +58,8 @@ impl NearestField<'_> {
         let (of_law, all) = (slopes.len(), slopes.len() + strips.len());
         let mut squares = DMatrix::zeros(all, all);
         if let Some(law) = law {
-            squares
-                .view_mut((0, 0), (of_law, of_law))
-                .copy_from(law.covariance());
+            let mut by_law = squares.view_range_mut(..of_law, ..of_law);
+            by_law.copy_from(law.covariance());
         }
         let forces = [slopes, strips].concat();
         let tangent = &mut self.equations.newton.tangent;
@@ -76,7 +75,7 @@ impl NearestField<'_> {
             &answers.columns_range(of_law..),
         );
         squares
-            .view_mut((of_law, of_law), of_places.shape())
+            .view_range_mut(of_law.., of_law..)
             .copy_from(&of_places);
         Ok(Considered {
             slopes: forces,
@@ -171,29 +170,22 @@ impl NearestField<'_> {
 
     /// Appends the parameters to those of the field.
     pub(in crate::estimation) fn consider(&mut self, considered: Considered) {
-        let Considered {
-            changes,
-            answers,
-            squares,
-            ..
-        } = considered;
+        let (answers, squares) = (&considered.answers, &considered.squares);
         let (before, more) = (answers.nrows(), answers.ncols());
-        let across = &answers * &squares;
+        let across = answers * squares;
         let mut joined = DMatrix::zeros(before + more, before + more);
+        let of_field = &self.fit.covariance + &across * answers.transpose();
         joined
-            .view_mut((0, 0), (before, before))
-            .copy_from(&(&self.fit.covariance + &across * answers.transpose()));
+            .view_range_mut(..before, ..before)
+            .copy_from(&of_field);
+        joined.view_range_mut(..before, before..).copy_from(&across);
+        let transposed = across.transpose();
         joined
-            .view_mut((0, before), (before, more))
-            .copy_from(&across);
-        joined
-            .view_mut((before, 0), (more, before))
-            .copy_from(&across.transpose());
-        joined
-            .view_mut((before, before), (more, more))
-            .copy_from(&squares);
+            .view_range_mut(before.., ..before)
+            .copy_from(&transposed);
+        joined.view_range_mut(before.., before..).copy_from(squares);
         self.fit.covariance = joined;
-        self.linear.sensitivities.extend(changes);
+        self.linear.sensitivities.extend(considered.changes);
     }
 }
 
