@@ -147,16 +147,20 @@ impl Spline {
         let across = weights((x - column as f64) as f32);
         let down = weights((y - row as f64) as f32);
         let start = row * self.stride + column;
-        let mut sum = 0.0;
+        let mut columns = [0.0; 4];
         for (k, weight) in down.iter().enumerate() {
             let line = &self.coefficients[start + k * self.stride..][..4];
-            sum += weight
-                * (across[0] * line[0]
-                    + across[1] * line[1]
-                    + across[2] * line[2]
-                    + across[3] * line[3]);
+            for (sum, coefficient) in columns.iter_mut().zip(line) {
+                *sum += weight * coefficient;
+            }
         }
-        Some(sum)
+        Some(
+            columns
+                .iter()
+                .zip(across)
+                .map(|(sum, weight)| sum * weight)
+                .sum(),
+        )
     }
 
     /// ∂I/∂x and ∂I/∂y at all pixels, in grey values per pixel.

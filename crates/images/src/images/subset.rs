@@ -186,8 +186,9 @@ impl Subset {
         const SMALL: f64 = 1e-3;
         let mut warp = guess;
         for _ in 0..MOST {
-            if self.improve(image, &mut warp, noise)? < SMALL {
-                return self.match_at(image, warp, noise);
+            let (sums, length) = self.improve(image, &mut warp, noise)?;
+            if length < SMALL {
+                return Some(self.concluded(&sums, (warp, warp), noise));
             }
         }
         None
@@ -196,16 +197,12 @@ impl Subset {
     /// One step of [`Self::find`]: the displacement of the images' misfit that is linear about a guess, wherever noise would lead the search.
     pub fn find_linear(mut self, image: &Spline, guess: Warp, noise: &Noise) -> Option<Match> {
         let mut warp = guess;
-        self.improve(image, &mut warp, noise)?;
-        // Covariance and similarity are those about the guess.
-        Some(Match {
-            warp,
-            ..self.match_at(image, guess, noise)?
-        })
+        let (sums, _) = self.improve(image, &mut warp, noise)?;
+        Some(self.concluded(&sums, (guess, warp), noise))
     }
 
-    /// One step; its length in pixels. `None` where it leads too far.
-    fn improve(&mut self, image: &Spline, warp: &mut Warp, noise: &Noise) -> Option<f64> {
+    /// One step; the sums before it, and its length in pixels. `None` where it leads too far.
+    fn improve(&mut self, image: &Spline, warp: &mut Warp, noise: &Noise) -> Option<(Sums, f64)> {
         let sums = self.sums_inside(image, warp)?;
         let f = warp.deformation_gradient();
         let q = self.step(&sums, noise);
@@ -218,7 +215,7 @@ impl Subset {
             warp.terms[k][1] += change.y * scale;
         }
         let sound = largest.is_finite() && warp.deformation_gradient().determinant() > 0.05;
-        (sound && largest <= 2.0 * self.half).then_some(largest)
+        (sound && largest <= 2.0 * self.half).then_some((sums, largest))
     }
 
     /// The sums about a field; pixels that it carries out of the image are left out, and `None` where they are most.
@@ -323,12 +320,8 @@ impl Subset {
         step.solve(&(residual * -self.gain(sums, noise)))
     }
 
-    fn match_at(&self, image: &Spline, warp: Warp, noise: &Noise) -> Option<Match> {
-        let sums = self.sums(image, &warp).ok()?;
-        self.concluded(&sums, warp, noise)
-    }
-
-    fn concluded(&self, sums: &Sums, warp: Warp, noise: &Noise) -> Option<Match> {
+    /// The match at a field, with the covariance and similarity of sums about another one.
+    fn concluded(&self, sums: &Sums, (about, warp): (Warp, Warp), noise: &Noise) -> Match {
         let Matrices { value, square, .. } = &self.matrices;
         let [first, second, product] = self.moments(sums, noise);
         let gain = self.gain(sums, noise);
@@ -342,14 +335,14 @@ impl Subset {
             square / sums.count - mean * mean,
             sums.square / sums.count - other * other,
         ];
-        Some(Match {
+        Match {
             warp,
-            covariance: self.covariance(warp.deformation_gradient(), gain, other, noise),
+            covariance: self.covariance(about.deformation_gradient(), gain, other, noise),
             similarity,
             gain,
             offset: mean - gain * other,
             misfit: mean_square - 2.0 * gain * product + gain * gain * other_square,
-        })
+        }
     }
 
     /// Adds the squares of the residuals, each divided by the variance that a pixel of unit variance gives it.
