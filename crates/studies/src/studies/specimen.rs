@@ -35,7 +35,7 @@ pub use problem::{
     GridCorrection, GridElements, Method, NEWTON, Outline, PlateGrids, Refinement, Specimen,
 };
 pub(crate) use read::{read_measurements, read_moving};
-use results::end::{End, tell};
+use results::end::{End, Run, tell};
 use results::models::Models;
 use results::verdict;
 pub use results::{finest_mesh, force_with_error, one_model};
@@ -99,8 +99,9 @@ pub fn prepare(root: &Section, folder: &Path) -> Computation {
 /// # Errors
 /// [`Error::Solve`] where no model has an equilibrium at all.
 pub fn compute(specimen: &Specimen, progress: Progress) -> Result<Outcome, Error> {
-    let mut ends = Vec::new();
-    let models = solved(specimen, &mut ends, progress)?;
+    let mut run = Run::new(specimen, progress);
+    let models = solved(&mut run)?;
+    let ends = run.ends;
     // There is not even an equilibrium on the way to the first load factor.
     let is_nothing = models.reached() == 0 && ends.iter().all(End::is_empty);
     if let Some(first) = ends.first().filter(|_| is_nothing) {
@@ -112,11 +113,11 @@ pub fn compute(specimen: &Specimen, progress: Progress) -> Result<Outcome, Error
 }
 
 /// The models; with finer finite elements where those of the study are too coarse to judge the others.
-fn solved(specimen: &Specimen, ends: &mut Vec<End>, progress: Progress) -> Result<Models, Error> {
-    let models = Models::solve(specimen, ends, progress)?;
-    if models.reference.may_be_finer(specimen) && verdict::is_open(specimen, &models) {
-        progress.tell("finer finite elements");
-        return models.with_finer_elements(specimen, ends, progress);
+fn solved(run: &mut Run) -> Result<Models, Error> {
+    let models = Models::solve(run)?;
+    if models.reference.may_be_finer(run.specimen) && verdict::is_open(run.specimen, &models) {
+        run.progress.tell("finer finite elements");
+        return models.with_finer_elements(run);
     }
     Ok(models)
 }
@@ -138,8 +139,8 @@ pub fn fields(
     factors.retain(|before| *before * factor > 0.0 && before.abs() < factor.abs());
     factors.push(factor);
     let last = factors.len() - 1;
-    let mut ends = Vec::new();
-    let models = solved(&specimen, &mut ends, progress)?;
+    let mut run = Run::new(&specimen, progress);
+    let models = solved(&mut run)?;
     let field = |kind: ModelKind| {
         let solution = models.of(kind);
         let displacement = solution.displacement(last)?.to_vec();
@@ -164,6 +165,6 @@ pub fn fields(
         ModelKind::MassSpring,
         ModelKind::Corrected,
     ];
-    let ends = ends.iter().map(End::error).collect();
+    let ends = run.ends.iter().map(End::error).collect();
     ModelFields::of(order.map(field), ends, models.reference.field_percent(last))
 }

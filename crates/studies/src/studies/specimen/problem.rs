@@ -12,10 +12,10 @@ use crate::problem::sheet_energy::SheetEnergy;
 use crate::problem::{BoundaryProblem, ClampedPlate, Drive, GroupState, Model, Support};
 use crate::results::Sheet;
 use crate::solve::{LinearSolver, NewtonSettings, Remembering};
+use crate::studies::ModelKind;
 use crate::studies::pictures::Pictures;
 use crate::studies::regions::{NumberedRegion, SheetCards};
 use crate::studies::sections::Tolerances;
-use crate::studies::{ModelKind, Progress};
 
 mod grids;
 mod outline;
@@ -269,11 +269,6 @@ impl Specimen {
             return 0;
         }
         self.factors.len() * self.models.iter().map(of).sum::<usize>()
-    }
-
-    /// Reports that a model is solved at a load factor.
-    pub(super) fn report_solved(&self, progress: Progress, model: &str, factor: f64) {
-        progress.tell(&format!("{model}, {}", self.along.describe(factor)));
     }
 
     /// What stresses follow from.

@@ -19,6 +19,7 @@ mod refine;
 mod rounds;
 pub mod verdict;
 
+use end::{End, Run};
 use reference::Reference;
 
 /// What is measured on the finest finite elements at the last load factor, and its own error in %.
@@ -26,9 +27,9 @@ use reference::Reference;
 /// # Errors
 /// [`Error::Solve`] when they have no solution.
 pub fn force_with_error(specimen: &Specimen) -> Result<(f64, f64), Error> {
-    let mut ends = Vec::new();
-    let reference = Reference::solve(specimen, &mut ends, Progress::silent())?;
-    if let Some(end) = ends.pop() {
+    let mut run = Run::new(specimen, Progress::silent());
+    let reference = Reference::solve(&mut run)?;
+    if let Some(end) = run.ends.pop() {
         return Err(end.error());
     }
     let last = specimen.factors.len() - 1;
@@ -46,20 +47,17 @@ pub fn one_model(
     kind: ModelKind,
     progress: Progress,
 ) -> Result<OneModel, Error> {
-    let mut ends = Vec::new();
+    let mut run = Run::new(specimen, progress);
     let (solution, mut multipliers) = match kind {
-        ModelKind::MassSpring => (
-            lattice::solve_springs(specimen, &mut ends, progress)?.1,
-            Vec::new(),
-        ),
-        ModelKind::FiniteElement => (refine::finest(specimen, &mut ends, progress)?, Vec::new()),
-        ModelKind::Corrected => lattice::solve_corrected(specimen, &mut ends, progress)?,
+        ModelKind::MassSpring => (lattice::solve_springs(&mut run)?.1, Vec::new()),
+        ModelKind::FiniteElement => (refine::finest(&mut run)?, Vec::new()),
+        ModelKind::Corrected => lattice::solve_corrected(&mut run)?,
     };
     multipliers.resize_with(solution.reached(), Vec::new);
     Ok(OneModel {
         forces: measured_forces(specimen, &solution),
         multipliers,
-        ends: ends.iter().map(end::End::error).collect(),
+        ends: run.ends.iter().map(End::error).collect(),
         warnings: findings(Examined {
             specimen,
             series: &[ModelSeries::of(kind, &solution, &[])],
@@ -93,7 +91,9 @@ pub fn finest_mesh(specimen: &Specimen) -> Result<Mesh, Error> {
     if specimen.refinement.is_none() {
         return Ok(specimen.outline.finest_mesh());
     }
-    let mut ends = Vec::new();
-    let finest = refine::finest(specimen, &mut ends, Progress::silent())?;
-    ends.pop().map_or(Ok(finest.mesh), |end| Err(end.error()))
+    let mut run = Run::new(specimen, Progress::silent());
+    let finest = refine::finest(&mut run)?;
+    run.ends
+        .pop()
+        .map_or(Ok(finest.mesh), |end| Err(end.error()))
 }

@@ -6,8 +6,37 @@ use crate::mesh::Mesh;
 use crate::problem::{GroupState, Model};
 use crate::results::{Block, Grid, GridSeries, Outcome};
 use crate::solve::{PathEnd, State};
+use crate::studies::Progress;
 use crate::studies::specimen::problem::Specimen;
 use crate::units::decimals;
+
+/// A specimen whose models are computed one after the other, and where their paths have ended so far.
+pub struct Run<'a> {
+    pub specimen: &'a Specimen,
+    pub progress: Progress<'a>,
+    pub ends: Vec<End>,
+}
+
+impl<'a> Run<'a> {
+    pub fn new(specimen: &'a Specimen, progress: Progress<'a>) -> Self {
+        Self {
+            specimen,
+            progress,
+            ends: Vec::new(),
+        }
+    }
+
+    /// The same for what is computed besides: where a path ends is told of the meshes whose results are given.
+    pub fn aside(&self) -> Self {
+        Self::new(self.specimen, self.progress)
+    }
+
+    /// Reports that a model is solved at a load factor.
+    pub fn report_solved(&self, model: &str, factor: f64) {
+        let at = self.specimen.along.describe(factor);
+        self.progress.tell(&format!("{model}, {at}"));
+    }
+}
 
 /// Where the path of one model ended, and why.
 pub struct End {

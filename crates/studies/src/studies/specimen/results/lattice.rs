@@ -1,7 +1,7 @@
 //! Springs on the lattice of a specimen and their correction, each as far as its path goes.
 
 use super::corrected_fields::{Correction, Fields, Start};
-use super::end::End;
+use super::end::{End, Run};
 use super::on_grids;
 use crate::corrector::nested::{NestedCorrection, NestedMeshes};
 use crate::corrector::specimen::{correct, correct_without_multipliers};
@@ -13,8 +13,8 @@ use crate::problem::{Model, Solution};
 use crate::results::models::{CORRECTED, MASS_SPRING};
 use crate::solve::vector::difference;
 use crate::solve::{Attendance, Loading, NewtonSettings, PathEnd, Stage, State};
-use crate::studies::specimen::problem::{LARGE, NEWTON, Specimen};
-use crate::studies::{ModelKind, Progress};
+use crate::studies::ModelKind;
+use crate::studies::specimen::problem::{LARGE, NEWTON};
 
 const CORRECTOR: CorrectorSettings = CorrectorSettings {
     tolerance: 1e-10,
@@ -37,15 +37,9 @@ pub struct OnLattice {
 
 /// Solves as many load factors as can be reached; where others cannot, the end is told. `file` is what the model's files
 /// begin with.
-pub fn solve(
-    specimen: &Specimen,
-    model: &Model,
-    file: &str,
-    ends: &mut Vec<End>,
-    settings: NewtonSettings,
-    progress: Progress,
-) -> Solution {
-    let report = |factor: f64| specimen.report_solved(progress, &model.name, factor);
+pub fn solve(run: &mut Run, model: &Model, file: &str, settings: NewtonSettings) -> Solution {
+    let (specimen, progress) = (run.specimen, run.progress);
+    let report = |factor: f64| run.report_solved(&model.name, factor);
     let report_short_step = |factor: f64| {
         let at = specimen.along.describe((1e4 * factor).round() / 1e4);
         progress.tell(&format!("{}, {at}, one of many short steps", model.name));
@@ -56,18 +50,15 @@ pub fn solve(
     };
     let states = model.attended(&specimen.factors, settings, attendance);
     let states = states.unwrap_or_else(|end| {
-        ends.push(End::of_path(specimen, model, file, &end));
+        run.ends.push(End::of_path(specimen, model, file, &end));
         end.states
     });
     Solution::new(model, &specimen.groups(), states)
 }
 
 /// The springs on the lattice, as far as they go; without solutions where the study leaves them out.
-pub fn solve_springs(
-    specimen: &Specimen,
-    ends: &mut Vec<End>,
-    progress: Progress,
-) -> Result<(MassSpring, Solution), Error> {
+pub fn solve_springs(run: &mut Run) -> Result<(MassSpring, Solution), Error> {
+    let specimen = run.specimen;
     let springs = specimen.springs();
     if !specimen.computes(ModelKind::MassSpring) {
         let none = Solution::empty(springs.mesh.clone());
@@ -77,21 +68,17 @@ pub fn solve_springs(
     let model = model.named(MASS_SPRING.name);
     let model = model.describing(|element| springs.describe_element(element));
     let settings = specimen.springs_newton;
-    let uncorrected = solve(specimen, &model, MASS_SPRING.key, ends, settings, progress);
+    let uncorrected = solve(run, &model, MASS_SPRING.key, settings);
     drop(model);
     Ok((springs, uncorrected))
 }
 
 impl OnLattice {
     /// Solves the springs and corrects them, as the study wants; each goes as far as it can, whatever the other does.
-    pub fn solve(
-        specimen: &Specimen,
-        ends: &mut Vec<End>,
-        progress: Progress,
-    ) -> Result<Self, Error> {
-        let (springs, uncorrected) = solve_springs(specimen, ends, progress)?;
-        let mesh = specimen.outline.corrected_mesh();
-        if !specimen.computes(ModelKind::Corrected) {
+    pub fn solve(run: &mut Run) -> Result<Self, Error> {
+        let (springs, uncorrected) = solve_springs(run)?;
+        let mesh = run.specimen.outline.corrected_mesh();
+        if !run.specimen.computes(ModelKind::Corrected) {
             return Ok(Self {
                 springs,
                 uncorrected,
@@ -99,27 +86,22 @@ impl OnLattice {
                 correction: Correction::default(),
             });
         }
-        let nested = correct_nested(specimen, &mesh, progress)?;
-        let springs = (springs, uncorrected);
-        Self::correct(specimen, &mesh, springs, nested, ends, progress)
+        let nested = correct_nested(run, &mesh)?;
+        Self::correct(run, &mesh, (springs, uncorrected), nested)
     }
 
     /// Corrects the springs where nested meshes do not lead.
     fn correct(
-        specimen: &Specimen,
+        run: &mut Run,
         mesh: &Mesh,
         (springs, uncorrected): (MassSpring, Solution),
         nested: Vec<NestedCorrection>,
-        ends: &mut Vec<End>,
-        progress: Progress,
     ) -> Result<Self, Error> {
+        let specimen = run.specimen;
         let energy = specimen.corrected_energy(mesh);
         let model = specimen.on(mesh, &energy)?.named("corrector");
         let fields = match specimen.plate() {
-            Some((plate, grids)) => {
-                let plate = (&plate, grids);
-                on_grids::correct(specimen, plate, mesh, &uncorrected, ends, progress)?
-            }
+            Some((plate, grids)) => on_grids::correct(run, (&plate, grids), mesh, &uncorrected)?,
             None => {
                 let mut fields = Fields::default();
                 for field in nested {
@@ -127,8 +109,12 @@ impl OnLattice {
                     let error = field.discretisation_error;
                     fields.correction.discretisation_errors.push(error);
                 }
-                Corrections::new(specimen, &model, progress).all(&uncorrected, &mut fields, ends);
-                fields
+                let corrections = Corrections {
+                    run,
+                    model: &model,
+                    steps: None,
+                };
+                corrections.all(&uncorrected, fields)
             }
         };
         let corrected = Solution::new(&model, &specimen.groups(), fields.states);
@@ -143,11 +129,8 @@ impl OnLattice {
 }
 
 /// The corrections on nested meshes at the load factors, as far as they lead; none where the study has no such meshes.
-fn correct_nested(
-    specimen: &Specimen,
-    mesh: &Mesh,
-    progress: Progress,
-) -> Result<Vec<NestedCorrection>, Error> {
+fn correct_nested(run: &Run, mesh: &Mesh) -> Result<Vec<NestedCorrection>, Error> {
+    let specimen = run.specimen;
     if !specimen.is_nested(2 * mesh.nodes.len()) {
         return Ok(Vec::new());
     }
@@ -161,60 +144,45 @@ fn correct_nested(
             Err(Error::Solve { .. }) => break,
             Err(other) => return Err(other),
         }
-        specimen.report_solved(progress, "corrector", *factor);
+        run.report_solved("corrector", *factor);
     }
     Ok(fields)
 }
 
 /// The corrected field alone, with its multipliers: on nested meshes the lattice's own springs are not needed.
-pub fn solve_corrected(
-    specimen: &Specimen,
-    ends: &mut Vec<End>,
-    progress: Progress,
-) -> Result<(Solution, Vec<Vec<Multipliers>>), Error> {
+pub fn solve_corrected(run: &mut Run) -> Result<(Solution, Vec<Vec<Multipliers>>), Error> {
+    let specimen = run.specimen;
     let mesh = specimen.outline.corrected_mesh();
-    let nested = correct_nested(specimen, &mesh, progress)?;
+    let nested = correct_nested(run, &mesh)?;
     if nested.len() == specimen.factors.len() {
         let energy = specimen.corrected_energy(&mesh);
         let model = specimen.on(&mesh, &energy)?;
         let states: Vec<State> = nested.into_iter().map(|field| field.state).collect();
         let multipliers = vec![Vec::new(); states.len()];
-        return Ok((
-            Solution::new(&model, &specimen.groups(), states),
-            multipliers,
-        ));
+        let solution = Solution::new(&model, &specimen.groups(), states);
+        return Ok((solution, multipliers));
     }
-    let springs = solve_springs(specimen, ends, progress)?;
-    let on_lattice = OnLattice::correct(specimen, &mesh, springs, nested, ends, progress)?;
+    let springs = solve_springs(run)?;
+    let on_lattice = OnLattice::correct(run, &mesh, springs, nested)?;
     // Where the springs end early the correction goes on.
-    ends.retain(|end| !end.is_of(MASS_SPRING.name));
+    run.ends.retain(|end| !end.is_of(MASS_SPRING.name));
     Ok((on_lattice.corrected, on_lattice.correction.multipliers))
 }
 
 /// The corrections at all load factors.
-struct Corrections<'a> {
-    specimen: &'a Specimen,
+struct Corrections<'a, 'b> {
+    run: &'a mut Run<'b>,
     model: &'a Model<'a>,
-    progress: Progress<'a>,
     /// The equilibria of the elements by load steps from rest, once they are wanted.
     steps: Option<Result<Vec<State>, PathEnd>>,
 }
 
-impl<'a> Corrections<'a> {
-    fn new(specimen: &'a Specimen, model: &'a Model<'a>, progress: Progress<'a>) -> Self {
-        Self {
-            specimen,
-            model,
-            progress,
-            steps: None,
-        }
-    }
-
+impl Corrections<'_, '_> {
     /// Corrects as many load factors as can be, beyond the fields that nested meshes have led to.
-    fn all(mut self, uncorrected: &Solution, fields: &mut Fields, ends: &mut Vec<End>) {
+    fn all(mut self, uncorrected: &Solution, mut fields: Fields) -> Fields {
         let mut change = vec![0.0; 2 * self.model.mesh.nodes.len()];
         let onto_mesh = uncorrected.mesh.interpolation_on(self.model.mesh);
-        let factors = self.specimen.factors.iter().enumerate();
+        let factors = self.run.specimen.factors.iter().enumerate();
         for (step, factor) in factors.skip(fields.states.len()) {
             let springs = uncorrected.displacement(step);
             let springs = springs.map(|u| onto_mesh.apply(u));
@@ -226,19 +194,19 @@ impl<'a> Corrections<'a> {
             let stage = Stage { factor, history };
             match self.at(step, stage, springs, &change) {
                 Ok(((state, multipliers), start)) => {
-                    let specimen = self.specimen;
-                    specimen.report_solved(self.progress, "corrector", factor);
+                    self.run.report_solved("corrector", factor);
                     if let Some(data) = springs {
                         change = difference(&state.displacement, data);
                     }
                     fields.push(state, start, multipliers);
                 }
                 Err(end) => {
-                    ends.push(*end);
+                    self.run.ends.push(*end);
                     break;
                 }
             }
         }
+        fields
     }
 
     /// Corrects the springs' field at a load factor; where there is none, or no way from it, load steps lead there.
@@ -260,11 +228,11 @@ impl<'a> Corrections<'a> {
                 return Ok((field, Start::Springs));
             }
         }
-        let (specimen, model) = (self.specimen, self.model);
-        let factors = &specimen.factors;
+        let (specimen, model) = (self.run.specimen, self.model);
+        let attendance = self.run.progress.along(&|_| ());
         let steps = self
             .steps
-            .get_or_insert_with(|| model.attended(factors, NEWTON, self.progress.along(&|_| ())));
+            .get_or_insert_with(|| model.attended(&specimen.factors, NEWTON, attendance));
         let reached = match steps {
             Ok(states) => &states[step],
             Err(end) => match end.states.get(step) {

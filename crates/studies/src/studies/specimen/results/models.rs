@@ -2,14 +2,13 @@
 
 use web_time::Instant;
 
-use super::end::End;
+use super::end::Run;
 use super::lattice::OnLattice;
 use super::reference::Reference;
 use crate::error::Error;
 use crate::problem::Solution;
+use crate::studies::ModelKind;
 use crate::studies::series::ModelSeries;
-use crate::studies::specimen::problem::Specimen;
-use crate::studies::{ModelKind, Progress};
 
 /// The three models of a specimen, each as far as its path goes; those that the study leaves out have no states.
 pub struct Models {
@@ -28,19 +27,16 @@ impl Models {
     ///
     /// # Errors
     /// [`Error::Input`] when a group of a mesh cannot be held or loaded as the study says.
-    pub fn solve(
-        specimen: &Specimen,
-        ends: &mut Vec<End>,
-        progress: Progress,
-    ) -> Result<Self, Error> {
+    pub fn solve(run: &mut Run) -> Result<Self, Error> {
         let start = Instant::now();
-        let reference = specimen.computes(ModelKind::FiniteElement);
-        let reference = reference.then(|| Reference::solve(specimen, ends, progress));
+        let reference = run.specimen.computes(ModelKind::FiniteElement);
+        let reference = reference.then(|| Reference::solve(run));
         let reference = reference.transpose()?;
         let elements = start.elapsed().as_secs_f64();
-        let on_lattice = OnLattice::solve(specimen, ends, progress)?;
+        let on_lattice = OnLattice::solve(run)?;
         let all = start.elapsed().as_secs_f64();
-        let reference = reference.unwrap_or_else(|| Reference::left_out(specimen, &on_lattice));
+        let left_out = || Reference::left_out(run.specimen, &on_lattice);
+        let reference = reference.unwrap_or_else(left_out);
         Ok(Self {
             expected: expected(&reference, &on_lattice),
             reference,
@@ -59,13 +55,8 @@ impl Models {
     ///
     /// # Errors
     /// [`Error::Input`] when a group of a mesh cannot be held or loaded as the study says.
-    pub fn with_finer_elements(
-        self,
-        specimen: &Specimen,
-        ends: &mut Vec<End>,
-        progress: Progress,
-    ) -> Result<Self, Error> {
-        let reference = self.reference.finer(specimen, ends, progress)?;
+    pub fn with_finer_elements(self, run: &mut Run) -> Result<Self, Error> {
+        let reference = self.reference.finer(run)?;
         Ok(Self {
             expected: expected(&reference, &self.on_lattice),
             reference,

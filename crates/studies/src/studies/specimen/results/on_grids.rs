@@ -1,15 +1,14 @@
 //! The corrected fields of a plate on its grids: by the climb, or by the direct method from the springs' field.
 
 use super::corrected_fields::{Fields, Start};
-use super::end::End;
+use super::end::{End, Run};
 use crate::corrector::PlateCorrector;
 use crate::corrector::climb::Climb;
 use crate::corrector::plate::KnownConditions;
 use crate::error::Error;
 use crate::mesh::Mesh;
 use crate::problem::{ClampedPlate, Solution};
-use crate::studies::Progress;
-use crate::studies::specimen::problem::{PlateGrids, Specimen};
+use crate::studies::specimen::problem::PlateGrids;
 
 /// Corrects as many stretches as can be, on a mesh to whose nodes the springs' field is interpolated. Where the springs have no field
 /// the affine stretch takes its place: it has a say in the multipliers, and in where the direct method begins.
@@ -17,12 +16,10 @@ use crate::studies::specimen::problem::{PlateGrids, Specimen};
 /// # Errors
 /// Any but [`Error::Solve`], which is an end.
 pub fn correct(
-    specimen: &Specimen,
+    run: &mut Run,
     (plate, grids): (&ClampedPlate, &PlateGrids),
     mesh: &Mesh,
     springs: &Solution,
-    ends: &mut Vec<End>,
-    progress: Progress,
 ) -> Result<Fields, Error> {
     let mut fields = Fields::default();
     let settings = &grids.correction;
@@ -33,7 +30,7 @@ pub fn correct(
     let onto_mesh = settings
         .is_graded()
         .then(|| springs.mesh.interpolation_on(mesh));
-    for (step, stretch) in specimen.factors.iter().enumerate() {
+    for (step, stretch) in run.specimen.factors.iter().enumerate() {
         let data = match (springs.displacement(step), &onto_mesh) {
             (Some(field), Some(onto_mesh)) => onto_mesh.apply(field),
             (Some(field), None) => field.to_vec(),
@@ -46,12 +43,12 @@ pub fn correct(
         let field = match corrected {
             Ok(field) => field,
             Err(Error::Solve { fault, .. }) => {
-                ends.push(End::at(specimen, *stretch, fault));
+                run.ends.push(End::at(run.specimen, *stretch, fault));
                 break;
             }
             Err(other) => return Err(other),
         };
-        specimen.report_solved(progress, "corrector", *stretch);
+        run.report_solved("corrector", *stretch);
         corrector = corrector.after(&field.state);
         let start = match springs.displacement(step) {
             Some(_) => Start::Grids,

@@ -1,7 +1,7 @@
 //! How the finite elements of a specimen are found: on three meshes, each twice as fine as the one before, or by local
 //! refinement.
 
-use super::end::{End, last_groups};
+use super::end::{End, Run, last_groups};
 use super::lattice::solve;
 use super::measured::Measured;
 use super::reference::{OutlineChange, Reference, Round, on_nodes_of};
@@ -14,7 +14,6 @@ use crate::mesh::Mesh;
 use crate::problem::Solution;
 use crate::results::models::FINITE_ELEMENTS;
 use crate::statistics::larger;
-use crate::studies::Progress;
 use crate::studies::specimen::problem::{Refinement, Specimen};
 
 /// The part of the squared error that is refined in a round.
@@ -29,40 +28,33 @@ const FILE: &str = FINITE_ELEMENTS.key;
 
 impl Reference {
     /// Solves the specimen on three meshes, or on as many as the goal of local refinement takes.
-    pub fn solve(
-        specimen: &Specimen,
-        ends: &mut Vec<End>,
-        progress: Progress,
-    ) -> Result<Self, Error> {
-        match specimen.refinement {
-            Some(goal) => Self::adaptive(specimen, goal, ends, progress),
-            None => Self::halved(specimen, ends, progress),
+    pub fn solve(run: &mut Run) -> Result<Self, Error> {
+        match run.specimen.refinement {
+            Some(goal) => Self::adaptive(run, goal),
+            None => {
+                let solutions = nested(run)?;
+                Self::of_meshes(run, solutions, Vec::new(), None)
+            }
         }
-    }
-
-    fn halved(specimen: &Specimen, ends: &mut Vec<End>, progress: Progress) -> Result<Self, Error> {
-        let solutions = nested(specimen, ends, progress)?;
-        Self::of_meshes(specimen, solutions, Vec::new(), None, ends, progress)
     }
 
     /// The reference on the last of some meshes; of local refinement with its rounds, and the solution with all cells halved.
     fn of_meshes(
-        specimen: &Specimen,
+        run: &Run,
         mut meshes: Vec<Solution>,
         rounds: Vec<Round>,
         all_halved: Option<Solution>,
-        ends: &[End],
-        progress: Progress,
     ) -> Result<Self, Error> {
+        let specimen = run.specimen;
         let finest = meshes.pop().expect("a mesh at least");
-        let measured = measured(specimen, &finest, ends);
+        let measured = measured(specimen, &finest, &run.ends);
         let once_halved = meshes.get(1).or(Some(&finest));
         let once_halved = once_halved.filter(|_| rounds.is_empty());
         let mut reference = Self {
             displacement: Vec::new(),
             of_all_nodes: Vec::new(),
             estimates: complete(estimates(specimen, &finest, &measured)?),
-            outline: outline_changes(specimen, &measured, once_halved, progress)?,
+            outline: outline_changes(run, &measured, once_halved)?,
             all_halved,
             coarser: meshes.split_off(meshes.len().saturating_sub(2)),
             on_grids: specimen.grids().is_some(),
@@ -87,50 +79,31 @@ impl Reference {
     ///
     /// # Errors
     /// [`Error::Input`] when a group of the mesh cannot be held or loaded as the study says.
-    pub fn finer(
-        mut self,
-        specimen: &Specimen,
-        ends: &mut Vec<End>,
-        progress: Progress,
-    ) -> Result<Self, Error> {
-        let mesh = specimen.outline.reference_mesh(3);
-        let finer = on_mesh(specimen, &mesh, Some(&self.finest), FILE, ends, progress)?;
+    pub fn finer(mut self, run: &mut Run) -> Result<Self, Error> {
+        let mesh = run.specimen.outline.reference_mesh(3);
+        let finer = on_mesh(run, &mesh, Some(&self.finest), FILE)?;
         let mut meshes = self.coarser.split_off(self.coarser.len() - 1);
         meshes.extend([self.finest, finer]);
-        Self::of_meshes(specimen, meshes, Vec::new(), None, ends, progress)
+        Self::of_meshes(run, meshes, Vec::new(), None)
     }
 
-    fn adaptive(
-        specimen: &Specimen,
-        goal: Refinement,
-        ends: &mut Vec<End>,
-        progress: Progress,
-    ) -> Result<Self, Error> {
+    fn adaptive(run: &mut Run, goal: Refinement) -> Result<Self, Error> {
         let Refined {
             triangles,
             meshes,
             rounds,
-        } = refined(specimen, goal, ends, progress)?;
+        } = refined(run, goal)?;
         let finest = meshes.last().expect("a mesh at least");
         let is_small = 4 * triangles.cell_count() <= Refinement::MOST_HALVED;
         let all_halved = (is_small && finest.reached() > 0).then(|| {
             // By their longest edges, as locally: cells cut into four by the middles of all would lock where these do not.
             let all = vec![true; triangles.cell_count()];
-            let halved = specimen.outline.fitted(triangles.refined_where(&all));
-            let mesh = specimen.outline.elements_on(&halved);
-            // Where a path ends is told of the meshes whose results are given.
-            let mut ignored_ends = Vec::new();
-            on_mesh(
-                specimen,
-                &mesh,
-                Some(finest),
-                FILE,
-                &mut ignored_ends,
-                progress,
-            )
+            let outline = &run.specimen.outline;
+            let mesh = outline.elements_on(&outline.fitted(triangles.refined_where(&all)));
+            on_mesh(&mut run.aside(), &mesh, Some(finest), FILE)
         });
         let all_halved = all_halved.transpose()?;
-        Self::of_meshes(specimen, meshes, rounds, all_halved, ends, progress)
+        Self::of_meshes(run, meshes, rounds, all_halved)
     }
 }
 
@@ -143,21 +116,17 @@ struct Refined {
 }
 
 /// Refines where the error is, until it is as small as wanted.
-fn refined(
-    specimen: &Specimen,
-    goal: Refinement,
-    ends: &mut Vec<End>,
-    progress: Progress,
-) -> Result<Refined, Error> {
+fn refined(run: &mut Run, goal: Refinement) -> Result<Refined, Error> {
+    let specimen = run.specimen;
     let mut triangles = specimen.outline.first_triangles();
     let (mut rounds, mut meshes): (Vec<Round>, Vec<Solution>) = (Vec::new(), Vec::new());
-    let ends_before = ends.len();
+    let ends_before = run.ends.len();
     loop {
         // A finer mesh may reach what a coarser one did not.
-        ends.truncate(ends_before);
+        run.ends.truncate(ends_before);
         let mesh = specimen.outline.elements_on(&triangles);
-        let solution = on_mesh(specimen, &mesh, meshes.last(), FILE, ends, progress)?;
-        let measured = measured(specimen, &solution, ends);
+        let solution = on_mesh(run, &mesh, meshes.last(), FILE)?;
+        let measured = measured(specimen, &solution, &run.ends);
         let estimates = estimates(specimen, &solution, &measured)?;
         rounds.push(Round::of(&solution, &measured, &estimates));
         meshes.push(solution);
@@ -182,48 +151,39 @@ fn refined(
 }
 
 /// The finite elements on all meshes, each with first guesses of the one before.
-fn nested(
-    specimen: &Specimen,
-    ends: &mut Vec<End>,
-    progress: Progress,
-) -> Result<Vec<Solution>, Error> {
-    let meshes = specimen.outline.reference_meshes();
+fn nested(run: &mut Run) -> Result<Vec<Solution>, Error> {
+    let meshes = run.specimen.outline.reference_meshes();
     let files = &FILES[FILES.len() - meshes.len()..];
     let mut solutions: Vec<Solution> = Vec::new();
     for (mesh, file) in meshes.iter().zip(files) {
         let coarser = solutions.last();
-        solutions.push(on_mesh(specimen, mesh, coarser, file, ends, progress)?);
+        solutions.push(on_mesh(run, mesh, coarser, file)?);
     }
     Ok(solutions)
 }
 
 /// The finest finite elements alone, with first guesses of the coarser ones as in a run.
-pub fn finest(
-    specimen: &Specimen,
-    ends: &mut Vec<End>,
-    progress: Progress,
-) -> Result<Solution, Error> {
-    if let Some(goal) = specimen.refinement {
-        let finest = refined(specimen, goal, ends, progress)?.meshes.pop();
+pub fn finest(run: &mut Run) -> Result<Solution, Error> {
+    if let Some(goal) = run.specimen.refinement {
+        let finest = refined(run, goal)?.meshes.pop();
         return Ok(finest.expect("a mesh at least"));
     }
-    let mut all = Vec::new();
-    let finest = nested(specimen, &mut all, progress)?.pop();
+    let mut all = run.aside();
+    let finest = nested(&mut all)?.pop();
     let finest = finest.expect("a mesh at least");
-    let is_complete = finest.reached() == specimen.factors.len();
-    ends.extend(all.pop().filter(|_| !is_complete));
+    let is_complete = finest.reached() == run.specimen.factors.len();
+    run.ends.extend(all.ends.pop().filter(|_| !is_complete));
     Ok(finest)
 }
 
 /// The finite elements on a mesh, with first guesses of a coarser one; `file` is what their files begin with.
 fn on_mesh(
-    specimen: &Specimen,
+    run: &mut Run,
     mesh: &Mesh,
     coarser: Option<&Solution>,
     file: &str,
-    ends: &mut Vec<End>,
-    progress: Progress,
 ) -> Result<Solution, Error> {
+    let specimen = run.specimen;
     let energy = specimen.problem.finite_elements(mesh);
     let mut model = specimen
         .on(mesh, &energy)?
@@ -233,15 +193,15 @@ fn on_mesh(
     }
     let settings = specimen.elements_newton;
     let by_quarter = quarter(specimen, mesh).and_then(|quarter| {
-        let report = |factor: f64| specimen.report_solved(progress, &model.name, factor);
+        let report = |factor: f64| run.report_solved(&model.name, factor);
         let coarser = coarser.map(|solution| (&solution.mesh, &solution.states[..]));
-        let attendance = progress.along(&report);
+        let attendance = run.progress.along(&report);
         quarter.states(&model, &specimen.factors, coarser, settings, attendance)
     });
     if let Some(states) = by_quarter {
         return Ok(Solution::new(&model, &specimen.groups(), states));
     }
-    Ok(solve(specimen, &model, file, ends, settings, progress))
+    Ok(solve(run, &model, file, settings))
 }
 
 /// The quarter of a plate's finite elements, by which they are solved sooner; `None` where the specimen is none that stays symmetric.
@@ -281,17 +241,15 @@ fn measured(specimen: &Specimen, solution: &Solution, ends: &[End]) -> Measured 
 
 /// What the curves that a file's edges stand for change at each load factor; `None` where there are no such edges.
 fn outline_changes(
-    specimen: &Specimen,
+    run: &Run,
     what: &Measured,
     middle: Option<&Solution>,
-    progress: Progress,
 ) -> Result<Option<Vec<OutlineChange>>, Error> {
+    let specimen = run.specimen;
     let Some((rounded, factor)) = specimen.outline.rounded_mesh() else {
         return Ok(None);
     };
-    // Where a path ends is told of the meshes whose results are given.
-    let mut ignored_ends = Vec::new();
-    let mut on = |mesh: &Mesh| on_mesh(specimen, mesh, middle, FILE, &mut ignored_ends, progress);
+    let on = |mesh: &Mesh| on_mesh(&mut run.aside(), mesh, middle, FILE);
     let rounded = on(&rounded)?;
     let halved;
     let middle = match middle {
