@@ -262,7 +262,7 @@ impl Kind {
         let Some((_, what)) = UNTITLED.iter().find(|(kind, _)| *kind == self.name) else {
             return root.heading("title");
         };
-        root.own_heading("title").unwrap_or_else(|| {
+        root.stated("title", Section::heading).unwrap_or_else(|| {
             // Faults of the card are reported where the study is read.
             let faults = Faults::default();
             let document = Document::parse("", text, &faults);

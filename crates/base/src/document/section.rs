@@ -14,6 +14,7 @@ use crate::error::{Diagnostic, Source, suggestion};
 
 mod choices;
 mod plain;
+mod stated;
 mod values;
 
 /// One table of a document.

@@ -171,20 +171,19 @@ impl Card {
         }
         let laws: Vec<_> = LAWS.iter().map(|law| (law.name, law)).collect();
         let law = root.choice("law", &laws);
-        card.density = root
-            .has("density")
-            .then(|| root.quantity("density", Dimension::Density, Bound::Positive));
+        card.density = root.optional_quantity("density", Dimension::Density, Bound::Positive);
         if root.has("viscosity") {
             card.viscosity = read_viscosity(&root.section("viscosity"));
         }
-        let softening = root.has("softening").then(|| root.section("softening"));
+        let softening = root.stated("softening", Section::section);
         let softening = softening.map(|section| Softening::read(&section));
         let is_curve = law.is_some_and(|law| law.is_measured_curve());
         card.read_data(&root.section("data"), is_curve);
         card.read_source(&root.section("source"));
-        card.fit = root.has("fit").then(|| read_fit(&root.section("fit")));
+        let fit = root.stated("fit", Section::section);
+        card.fit = fit.map(|section| read_fit(&section));
         let parameters = root.section("parameters");
-        let volume = root.has("volume").then(|| root.section("volume"));
+        let volume = root.stated("volume", Section::section);
         root.unknown_keys();
         let Some(law) = law else {
             return card;
@@ -252,16 +251,8 @@ impl Card {
 
 /// Reads the viscous part of a material from its section.
 pub fn read_viscosity(section: &Section) -> ViscousMaterial {
-    let shear_viscosity = if section.has("shear") {
-        section.quantity("shear", Dimension::Viscosity, Bound::NonNegative)
-    } else {
-        0.0
-    };
-    let terms = if section.has("relaxation") {
-        section.tables("relaxation")
-    } else {
-        Vec::new()
-    };
+    let shear = section.optional_quantity("shear", Dimension::Viscosity, Bound::NonNegative);
+    let terms = section.optional_tables("relaxation");
     let term = |term: &Section| {
         let read = Relaxation {
             share: term.quantity("share", Dimension::Ratio, Bound::Within(0.0, 0.999)),
@@ -275,19 +266,14 @@ pub fn read_viscosity(section: &Section) -> ViscousMaterial {
         let hint = "they are fractions of the instantaneous stress after a sudden stretch; the rest is the long-term stress";
         section.fault("relaxation", "the shares must add up to less than 1", hint);
     }
-    let range = |key: &'static str, dimension, bound| {
-        let values = if section.has(key) {
-            section.quantities(key, dimension, bound)
-        } else {
-            return None;
-        };
-        match values[..] {
-            [low, high] if low <= high => Some([low, high]),
-            _ => {
-                let hint = "the smallest and the largest one that the data cover";
-                section.fault(key, "must be two values in order", hint);
-                None
-            }
+    let range = |key: &'static str, dimension, bound| match section
+        .stated(key, |_, key| section.quantities(key, dimension, bound))?[..]
+    {
+        [low, high] if low <= high => Some([low, high]),
+        _ => {
+            let hint = "the smallest and the largest one that the data cover";
+            section.fault(key, "must be two values in order", hint);
+            None
         }
     };
     let covered = Covered {
@@ -296,32 +282,23 @@ pub fn read_viscosity(section: &Section) -> ViscousMaterial {
     };
     section.unknown_keys();
     ViscousMaterial {
-        shear_viscosity,
+        shear_viscosity: shear.unwrap_or(0.0),
         relaxation,
         covered,
     }
 }
 
 fn read_fit(section: &Section) -> FitRecord {
-    let optional = |key: &'static str| {
-        if section.has(key) {
-            section.texts(key)
-        } else {
-            Vec::new()
-        }
-    };
     let record = FitRecord {
         data: section.texts("data"),
-        reading: optional("reading"),
+        reading: section.optional_texts("reading"),
         weighting: section.text("weighting"),
         starts: section.count("starts", 1, 1000),
-        bounds: optional("bounds"),
-        relaxation_terms: section
-            .has("relaxation_terms")
-            .then(|| section.count("relaxation_terms", 0, 6)),
+        bounds: section.optional_texts("bounds"),
+        relaxation_terms: section.stated("relaxation_terms", |_, key| section.count(key, 0, 6)),
         softening: section.has("softening") && section.flag("softening"),
-        base_card: section.has("base_card").then(|| section.text("base_card")),
-        values: optional("values"),
+        base_card: section.stated("base_card", Section::text),
+        values: section.optional_texts("values"),
         uncertainty: ParameterUncertainty::read(section),
     };
     section.unknown_keys();

@@ -55,18 +55,14 @@ impl Softening {
 
     /// Reads the section of a card.
     pub fn read(section: &Section) -> Self {
-        let optional = |key: &'static str| section.has(key);
         let r = section.number("r", Self::R);
-        let m = if optional("m") || !optional("beta") {
+        let m = if section.has("m") || !section.has("beta") {
             section.quantity("m", Dimension::Stress, Bound::NonNegative)
         } else {
             0.0
         };
-        let beta = if optional("beta") {
-            section.number("beta", Bound::NonNegative)
-        } else {
-            0.0
-        };
+        let beta = section.stated("beta", |_, key| section.number(key, Bound::NonNegative));
+        let beta = beta.unwrap_or(0.0);
         if m == 0.0 && beta == 0.0 {
             let hint = "m is the energy over which the softening sets in, such as \"0.01 MPa\"";
             section.fault("m", "and `beta` must not both be zero", hint);

@@ -106,11 +106,9 @@ fn warn_of_volume(section: &Section<'_>, card: &Card) {
 
 /// What the section chooses with `sheet`; plane stress where it says nothing.
 fn plane_state(section: &Section<'_>) -> Option<PlaneState> {
-    if section.has(SHEET) {
-        section.choice(SHEET, &PlaneState::NAMES)
-    } else {
-        Some(PlaneState::Stress)
-    }
+    section
+        .stated(SHEET, |_, key| section.choice(key, &PlaneState::NAMES))
+        .unwrap_or(Some(PlaneState::Stress))
 }
 
 /// The card in the plane state of a section; that it has none is recorded.

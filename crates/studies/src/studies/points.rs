@@ -18,11 +18,7 @@ pub type Region = (Mesh, [[f64; 2]; 2]);
 
 /// All tables of a kind; none where the study has none.
 pub fn tables<T>(root: &Section, key: &'static str, read: impl FnMut(&Section) -> T) -> Vec<T> {
-    if root.has(key) {
-        root.tables(key).iter().map(read).collect()
-    } else {
-        Vec::new()
-    }
+    root.optional_tables(key).iter().map(read).collect()
 }
 
 /// A point of the sheet at rest in mm.

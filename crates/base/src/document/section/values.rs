@@ -20,15 +20,6 @@ impl<'a> Section<'a> {
         self.read(key, "text in quotes", text).unwrap_or_default()
     }
 
-    /// A text that may be missing, and is empty then.
-    pub fn optional_text(&self, key: &'static str) -> String {
-        if self.has(key) {
-            self.text(key)
-        } else {
-            String::new()
-        }
-    }
-
     /// A list of texts.
     pub fn texts(&self, key: &'static str) -> Vec<String> {
         self.asks(key, Some(Takes::Texts));
@@ -349,11 +340,6 @@ impl<'a> Section<'a> {
             );
         }
         text
-    }
-
-    /// A heading that the file itself holds; `None` where it does not, whatever the default is.
-    pub fn own_heading(&self, key: &'static str) -> Option<String> {
-        self.has(key).then(|| self.heading(key))
     }
 
     fn read<T>(

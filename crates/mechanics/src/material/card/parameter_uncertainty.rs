@@ -22,17 +22,10 @@ impl ParameterUncertainty {
         if !section.has(DEVIATIONS) {
             return None;
         }
-        let keys = if section.has(PARAMETERS) {
-            section.texts(PARAMETERS)
-        } else {
-            Vec::new()
-        };
+        let keys = section.optional_texts(PARAMETERS);
         let deviations = section.multiples(DEVIATIONS, Bound::NonNegative, f64::INFINITY);
-        let correlations = if section.has(CORRELATIONS) {
-            section.multiples(CORRELATIONS, Bound::Within(-1.0, 1.0), 1.0)
-        } else {
-            Vec::new()
-        };
+        let read = |_: &_, key| section.multiples(key, Bound::Within(-1.0, 1.0), 1.0);
+        let correlations = section.stated(CORRELATIONS, read).unwrap_or_default();
         let count = keys.len();
         if deviations.len() != count || correlations.len() != count * count.saturating_sub(1) / 2 {
             let message =

@@ -40,17 +40,11 @@ impl Card {
         self.strain_measure = strain.unwrap_or(StrainMeasure::Nominal);
         let offset = chosen(data, "offset", &OffsetTreatment::NAMES, false);
         self.offset = offset.unwrap_or(OffsetTreatment::Subtract);
-        self.test = if data.has("test") {
-            data.text("test")
-        } else {
-            "none".to_owned()
-        };
-        self.range_is_stated = data.has("stretch_range");
-        self.stretch_range = if self.range_is_stated {
-            read_range(data)
-        } else {
-            DRAWN
-        };
+        let test = data.stated("test", Section::text);
+        self.test = test.unwrap_or_else(|| "none".to_owned());
+        let range = data.stated("stretch_range", |_, _| read_range(data));
+        self.range_is_stated = range.is_some();
+        self.stretch_range = range.unwrap_or(DRAWN);
         data.unknown_keys();
     }
 

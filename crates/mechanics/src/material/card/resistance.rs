@@ -34,11 +34,7 @@ impl Card {
             }
             (_, false) => section.quantity(bulk, Dimension::Stress, Bound::Positive),
         };
-        let energy = if section.has("energy") {
-            section.choice("energy", &VolumeEnergy::NAMES)
-        } else {
-            None
-        };
+        let energy = section.optional_choice("energy", &VolumeEnergy::NAMES);
         section.unknown_keys();
         let volume = Volume {
             bulk_modulus,

@@ -29,15 +29,12 @@ pub struct SpecimenFile {
 impl SpecimenFile {
     /// Reads the section.
     pub(super) fn read(section: &Section) -> Self {
-        let path = |key| section.has(key).then(|| PathBuf::from(section.text(key)));
-        let length = |key| {
-            let has = section.has(key);
-            has.then(|| section.quantity(key, Dimension::Length, Bound::Positive))
-        };
+        let path = |key| section.stated(key, Section::text).map(PathBuf::from);
+        let length = |key| section.optional_quantity(key, Dimension::Length, Bound::Positive);
         let mesh = path("mesh");
         let mesh_unit = length("mesh_unit").unwrap_or(1.0);
         let file = Self {
-            name: section.has("name").then(|| section.text("name")),
+            name: section.stated("name", Section::text),
             fields: section.texts("fields").iter().map(PathBuf::from).collect(),
             thickness: section.quantity("thickness", Dimension::Length, Bound::Positive),
             unit: length("unit"),

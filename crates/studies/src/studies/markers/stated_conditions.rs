@@ -58,10 +58,7 @@ pub fn keys(text: &str) -> Vec<Key> {
 
 /// How the frames' times and those of the testing machine belong together.
 fn clock(root: &Section) -> FrameClock {
-    let time = |key, bound| {
-        let has = root.has(key);
-        has.then(|| root.quantity(key, Dimension::Time, bound))
-    };
+    let time = |key, bound| root.optional_quantity(key, Dimension::Time, bound);
     FrameClock {
         interval: time("frame_interval", Bound::Positive),
         offset: time("clock_offset", Bound::Any).unwrap_or_default(),
@@ -70,13 +67,9 @@ fn clock(root: &Section) -> FrameClock {
 
 /// Reads all keys; faults are recorded.
 fn read(root: &Section, folder: &Path) -> Conditions {
-    let length = |key, bound| {
-        let has = root.has(key);
-        has.then(|| root.quantity(key, Dimension::Length, bound))
-    };
-    let title = root.has("title").then(|| root.heading("title"));
+    let length = |key, bound| root.optional_quantity(key, Dimension::Length, bound);
     let mut conditions = Conditions {
-        title: title.unwrap_or_default(),
+        title: root.stated("title", Section::heading).unwrap_or_default(),
         noise: length("noise", Bound::Positive),
         edge_gap: length("edge_gap", Bound::NonNegative),
         ..Conditions::default()
@@ -86,42 +79,27 @@ fn read(root: &Section, folder: &Path) -> Conditions {
         conditions.scale_deviation = root.quantity("scale_error", Dimension::Ratio, half);
     }
     conditions.clock = clock(root);
-    if root.has("robust") {
-        conditions.robust = root.choice("robust", &Robust::NAMES);
-    }
-    if root.has("physics") {
-        conditions.physics = root.choice("physics", &Physics::NAMES).unwrap_or_default();
-    }
-    if root.has("unnamed") {
-        conditions.unnamed = root.choice("unnamed", &Unnamed::NAMES).unwrap_or_default();
-    }
-    if root.has("sheet") {
-        conditions.sheet = root.choice("sheet", &PlaneState::NAMES);
-    }
-    if root.has("fit") {
-        conditions.fit = root.texts("fit");
-    }
-    if root.has("specimen") {
-        conditions.specimen = Some(SpecimenFile::read(&root.section("specimen")));
-    }
-    if root.has("force") {
-        for section in &root.tables("force") {
-            if section.has("column") && !section.has("force") {
-                conditions.force_columns.push(force_column(section));
-            } else {
-                conditions.forces.push(force(section));
-            }
+    conditions.robust = root.optional_choice("robust", &Robust::NAMES);
+    let physics = root.optional_choice("physics", &Physics::NAMES);
+    conditions.physics = physics.unwrap_or_default();
+    let unnamed = root.optional_choice("unnamed", &Unnamed::NAMES);
+    conditions.unnamed = unnamed.unwrap_or_default();
+    conditions.sheet = root.optional_choice("sheet", &PlaneState::NAMES);
+    conditions.fit = root.optional_texts("fit");
+    let specimen = root.stated("specimen", Section::section);
+    conditions.specimen = specimen.map(|section| SpecimenFile::read(&section));
+    for section in &root.optional_tables("force") {
+        if section.has("column") && !section.has("force") {
+            conditions.force_columns.push(force_column(section));
+        } else {
+            conditions.forces.push(force(section));
         }
     }
-    if root.has("material") {
-        for section in root.tables("material") {
-            conditions.regions.extend(region(section, folder));
-        }
+    for section in root.optional_tables("material") {
+        conditions.regions.extend(region(section, folder));
     }
-    if root.has("edges") {
-        for section in &root.tables("edges") {
-            read_edges(section, &mut conditions);
-        }
+    for section in &root.optional_tables("edges") {
+        read_edges(section, &mut conditions);
     }
     root.unknown_keys();
     conditions
@@ -185,9 +163,7 @@ fn edge_and_axis(section: &Section) -> (String, usize) {
 }
 
 fn deviation(section: &Section) -> Option<f64> {
-    let key = "standard_deviation";
-    let has = section.has(key);
-    has.then(|| section.quantity(key, Dimension::Force, Bound::Positive))
+    section.optional_quantity("standard_deviation", Dimension::Force, Bound::Positive)
 }
 
 fn force(section: &Section) -> (Option<usize>, MeasuredForce) {
@@ -199,17 +175,13 @@ fn force(section: &Section) -> (Option<usize>, MeasuredForce) {
     }
     let force = section.quantity("force", Dimension::Force, Bound::Any);
     let deviation = deviation(section);
-    let has_frame = section.has("frame");
-    let frame = has_frame.then(|| section.count("frame", 0, usize::MAX >> 1));
+    let frame = section.stated("frame", |_, key| section.count(key, 0, usize::MAX >> 1));
     section.unknown_keys();
     (frame, measured_force(&edge, axis, force, deviation))
 }
 
 fn condition(section: &Section) -> EdgeCondition {
-    let along = |key: &'static str| {
-        let has = section.has(key);
-        has.then(|| section.quantity(key, Dimension::Length, Bound::Any))
-    };
+    let along = |key| section.optional_quantity(key, Dimension::Length, Bound::Any);
     match section.choice("condition", &CONDITIONS) {
         Some(EdgeCondition::Known(_)) => {
             let displacement = [along("ux"), along("uy")];

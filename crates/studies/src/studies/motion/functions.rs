@@ -223,14 +223,11 @@ pub fn read_stiffness(section: &Section) -> Option<SpringLaw> {
 /// η(·) of dashpots.
 pub fn read_damping(section: &Section) -> Option<DashpotLaw> {
     let function = read_function(section, Dimension::Viscosity);
-    let by_rate = if section.has("of") {
-        section.choice("of", &[("stretch", false), ("stretch rate", true)])
-    } else {
-        Some(true)
-    };
+    let choices = [("stretch", false), ("stretch rate", true)];
+    let by_rate = section.stated("of", |_, key| section.choice(key, &choices));
     section.unknown_keys();
     let one = ScalarFunction::constant(1.0);
-    let (by_stretch, by_rate) = if by_rate? {
+    let (by_stretch, by_rate) = if by_rate.unwrap_or(Some(true))? {
         (one, function?)
     } else {
         (function?, one)

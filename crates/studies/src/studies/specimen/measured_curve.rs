@@ -43,9 +43,7 @@ pub(crate) fn read_measured_curve(
     }
     let section = root.section("measured");
     let file = section.text("file");
-    let extensometer = section
-        .has("extensometer")
-        .then(|| section.text("extensometer"));
+    let extensometer = section.stated("extensometer", Section::text);
     section.unknown_keys();
     let table = Table::read(&folder.join(&file), HINT).and_then(|table| curve(&table));
     let (signal, points) = match table {

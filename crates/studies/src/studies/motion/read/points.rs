@@ -8,14 +8,10 @@ use crate::units::Dimension;
 
 fn read_force(section: &Section, region: Option<&Region>) -> PointForce {
     let force = ["x", "y"].map(|axis| section.quantity(axis, Dimension::Force, Bound::Any));
-    let instant = |key| section.quantity(key, Dimension::Time, Bound::NonNegative);
     let time = if section.has("begin") || section.has("end") {
-        let begin = if section.has("begin") {
-            instant("begin")
-        } else {
-            0.0
-        };
-        let end = instant("end");
+        let begin = section.optional_quantity("begin", Dimension::Time, Bound::NonNegative);
+        let begin = begin.unwrap_or(0.0);
+        let end = section.quantity("end", Dimension::Time, Bound::NonNegative);
         if end <= begin {
             section.fault("end", "must be after the begin", "give a later time");
         }

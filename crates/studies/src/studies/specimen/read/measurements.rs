@@ -28,11 +28,9 @@ fn read_line(section: &Section, name: String, region: Option<&Region>) -> LineCu
         name,
         from: read_point(section, "from", None),
         to: read_point(section, "to", None),
-        count: if section.has("points") {
-            section.count("points", 2, 10_000)
-        } else {
-            USUAL
-        },
+        count: section
+            .stated("points", |_, key| section.count(key, 2, 10_000))
+            .unwrap_or(USUAL),
     };
     let is_on_sheet = |point: &[f64; 2]| region.is_none_or(|(mesh, _)| mesh.outside(*point) == 0.0);
     let is_known = line.from.iter().chain(&line.to).all(|x| x.is_finite());

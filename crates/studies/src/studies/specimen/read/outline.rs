@@ -67,14 +67,8 @@ pub fn read_outline(
 fn read_mesh(section: &Section, import: &Import) -> Option<(Mesh, Exemptions)> {
     let file = section.text("file");
     let unit = section.unit("file_unit", Dimension::Length);
-    let merge_nodes = section
-        .has("merge_nodes")
-        .then(|| section.quantity("merge_nodes", Dimension::Length, Bound::Positive));
-    let names = if section.has("allowed") {
-        section.texts("allowed")
-    } else {
-        Vec::new()
-    };
+    let merge_nodes = section.optional_quantity("merge_nodes", Dimension::Length, Bound::Positive);
+    let names = section.optional_texts("allowed");
     let allowed = Exemptions::of_names(names.iter().map(String::as_str));
     if let Err(unknown) = &allowed {
         let hint = format!("one of {}", Exemptions::NAMES.join(", "));

@@ -163,10 +163,7 @@ fn entries<'a, T>(
     key: &'static str,
     read: fn(&Section) -> Option<(String, T)>,
 ) -> (Vec<Entry<'a, T>>, bool) {
-    if !root.has(key) {
-        return (Vec::new(), true);
-    }
-    let sections = root.tables(key);
+    let sections = root.optional_tables(key);
     let written = sections.len();
     let entries = sections.into_iter().filter_map(|section| {
         let (group, condition) = read(&section)?;
@@ -186,14 +183,6 @@ fn pairs<T: Copy>(entries: &[Entry<T>]) -> Vec<(String, T)> {
     entries
         .map(|entry| (entry.group.clone(), entry.condition))
         .collect()
-}
-
-/// A vector of two quantities under `x` and `y`; one that is missing is nothing.
-fn components(section: &Section, dimension: Dimension) -> [Option<f64>; 2] {
-    ["x", "y"].map(|key| {
-        let given = section.has(key);
-        given.then(|| section.quantity(key, dimension, Bound::Any))
-    })
 }
 
 /// What moves a grip along an axis, by the keys of a displacement and of a force.
@@ -245,10 +234,7 @@ fn read_support(section: &Section) -> Option<(String, Support)> {
     )? {
         0 => Support::Displacement([Some(0.0); 2]),
         1 => {
-            let displacement = ["x", "y"].map(|key| {
-                let given = section.has(key);
-                given.then(|| section.linear_length(key))
-            });
+            let displacement = ["x", "y"].map(|key| section.stated(key, Section::linear_length));
             if displacement == [None; 2] {
                 section.fault("kind", "needs x or y", "x = \"0 mm\" is a roller along y");
             }
@@ -287,7 +273,7 @@ fn read_support(section: &Section) -> Option<(String, Support)> {
 fn read_load(section: &Section) -> Option<(String, Load)> {
     let group = section.text("group");
     let vector = |dimension: Dimension| {
-        let given = components(section, dimension);
+        let given = ["x", "y"].map(|key| section.optional_quantity(key, dimension, Bound::Any));
         if given == [None; 2] {
             let hint = format!("x = {} acts along x", dimension.example());
             section.fault("kind", "needs x or y", &hint);
