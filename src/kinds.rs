@@ -130,7 +130,7 @@ pub fn read_as(
 
 /// The keys that are looked up when a text is read as a study of a kind.
 pub fn keys(kind: &Kind, text: &str) -> Vec<Key> {
-    kind.keys(reader(kind), text)
+    kind.keys(text, reader(kind))
 }
 
 /// Names of files for `gelbench new` and `gelbench keys` that no `kind` of a study has.

@@ -221,22 +221,11 @@ impl Kind {
         read: impl FnOnce(&Section, &Path) -> Option<T>,
     ) -> Result<Loaded<T>, Error> {
         let read = self.read_with(file, text, budget, read)?;
-        Ok(Loaded {
-            title: read.title,
-            made: read.made.expect(SOUND),
-            output: read.output,
-            defaults: read.defaults,
-            warnings: read.warnings,
-        })
+        Ok(read.map(|made| made.expect(SOUND)))
     }
 
-    /// The keys that are looked up when a text is read.
-    pub fn keys(&self, prepare: Prepare, text: &str) -> Vec<Key> {
-        self.keys_with(text, prepare)
-    }
-
-    /// The same with any reader.
-    fn keys_with<T>(&self, text: &str, read: impl FnOnce(&Section, &Path) -> T) -> Vec<Key> {
+    /// The keys that are looked up when `read` reads a text.
+    pub fn keys<T>(&self, text: &str, read: impl FnOnce(&Section, &Path) -> T) -> Vec<Key> {
         let faults = Faults::default();
         let document = Document::parse("", text, &faults);
         let defaults = self.defaults(&document, &faults);
@@ -284,22 +273,22 @@ impl Kind {
         let folder = file.parent().unwrap_or(Path::new("."));
         let file = file.display().to_string();
         let faults = Faults::within(budget);
-        let (title, content, output) = {
+        let (title, made, output) = {
             let document = Document::parse(&file, text, &faults);
             let defaults = self.defaults(&document, &faults);
             let root = document.root(Some(&defaults), &faults);
             root.text("kind");
             let title = self.title(&root, text, folder);
-            let content = read(&root, folder);
+            let made = read(&root, folder);
             let output = self.output(&root);
             root.unknown_keys();
-            (title, content, output)
+            (title, made, output)
         };
         let defaults = faults.defaults();
         let warnings = faults.finish()?;
         Ok(Loaded {
             title,
-            made: content,
+            made,
             output,
             defaults,
             warnings,

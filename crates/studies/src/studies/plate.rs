@@ -44,5 +44,5 @@ pub fn prepare(file: &Path, text: &str, budget: Budget) -> Result<PreparedStudy,
 
 /// The keys that are looked up when a text is read.
 pub fn keys(text: &str) -> Vec<Key> {
-    PLATE.keys_with(text, read::read)
+    PLATE.keys(text, read::read)
 }

@@ -19,7 +19,7 @@ use crate::studies::sections::{
     read_models, read_newton, read_plate, refuse_memory,
 };
 use crate::studies::specimen::{
-    Along, GridCorrection, GridElements, Method, Outline, PlateGrids, Specimen, check_extensometer,
+    Along, GridCorrection, GridElements, Outline, PlateGrids, Specimen, check_extensometer,
     read_measured_curve, read_measurements,
 };
 use crate::units::Dimension;
@@ -72,25 +72,19 @@ pub fn read(root: &Section<'_>, folder: &Path) -> Option<Specimen> {
     let measured_curve = read_measured_curve(root, folder, Some(problem.size[0]));
     let (card, outline) = (card?, outline?);
     warn_of_own_reference(root, &outline);
+    let usual = Specimen::of("plate", card, problem.boundary_problem(), outline, "right");
     let specimen = Specimen {
         measurements,
         measured_curve,
-        name: "plate".into(),
-        problem: problem.boundary_problem(),
-        card,
-        regions: Vec::new(),
         along: Along::Stretch,
         factors: problem.stretches,
         models,
         springs_newton,
         elements_newton,
-        group: "right".into(),
         tolerances,
-        refinement: None,
-        correction: Method::Automatic,
         linear_solver: linear_solver?,
-        outline,
         pictures,
+        ..usual
     };
     check_extensometer(root, &specimen);
     Some(specimen)
