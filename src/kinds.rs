@@ -244,13 +244,11 @@ pub fn compute_or_fail(kind: &Kind, progress: Progress) -> Result<Results, Error
                 title: kind.name.to_owned(),
                 kind: kind.name,
                 text: kind.study.to_owned(),
-                defaults: Vec::new(),
-                read_warnings: Vec::new(),
                 outcome: Outcome {
                     checks: vec![check],
                     ..Outcome::default()
                 },
-                seconds: 0.0,
+                ..Results::default()
             })
         }
         other => other,

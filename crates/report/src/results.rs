@@ -199,7 +199,7 @@ impl Outcome {
 }
 
 /// The results of a study.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Results {
     /// The study's name, from the name of its file.
     pub name: String,

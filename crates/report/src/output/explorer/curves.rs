@@ -37,7 +37,7 @@ pub fn curves(results: &Results, shown: &[f64]) -> Vec<Value> {
     }
     // Sorting keeps the order of equals.
     names.sort_by_key(|name| {
-        !(name.contains("force_N") || name.contains("measured") || is_on_edge(name))
+        !(name.contains("force_N") || name.contains("measured") || name.starts_with(ON_EDGE))
     });
     let models: Vec<&String> = at_steps
         .first()
@@ -68,10 +68,6 @@ fn is_none_at_rest(along: &str, name: &str) -> bool {
 
 /// Begin of the names of forces on edges.
 const ON_EDGE: &str = "force_on_";
-
-fn is_on_edge(name: &str) -> bool {
-    name.starts_with(ON_EDGE)
-}
 
 fn of_model(model: &Value) -> Numbers {
     let mut all = Numbers::new();
@@ -114,13 +110,8 @@ mod tests {
             };
             let results = Results {
                 outcome,
-                name: String::new(),
-                title: String::new(),
                 kind: "plate",
-                text: String::new(),
-                defaults: Vec::new(),
-                read_warnings: Vec::new(),
-                seconds: 0.0,
+                ..Results::default()
             };
             let curves = curves(&results, &[0.5, 1.0]);
             [0, 1].map(|curve| curves[curve]["models"]["finite elements"].clone())

@@ -14,7 +14,7 @@ use super::TrackedImages;
 use crate::error::Diagnostic;
 use crate::markers::{Frame, Marker};
 use crate::results::{
-    Block, Content, FieldFigure, Figure, Finding, Outcome, Panel, Results, Step, Table,
+    Block, Content, FieldFigure, Figure, Finding, Outcome, Panel, Results, Step, Table, object,
 };
 use crate::studies::markers::finding::runs;
 use crate::studies::markers::mistaken;
@@ -39,8 +39,6 @@ pub fn results(tracked: &TrackedImages, name: String, seconds: f64) -> Results {
         name,
         title: "Tracked images".to_owned(),
         kind: KIND,
-        text: String::new(),
-        defaults: Vec::new(),
         read_warnings: tracked.warnings.iter().map(ToString::to_string).collect(),
         outcome: Outcome {
             problem: problem(tracked),
@@ -64,6 +62,7 @@ pub fn results(tracked: &TrackedImages, name: String, seconds: f64) -> Results {
             ..Outcome::default()
         },
         seconds,
+        ..Results::default()
     }
 }
 
@@ -157,15 +156,14 @@ fn words(tracked: &TrackedImages) -> String {
 
 fn problem(tracked: &TrackedImages) -> Map<String, serde_json::Value> {
     let noise = tracked.tracker.noise();
-    let value = json!({
+    object(json!({
         "pixel_mm": tracked.pixel,
         "spacing_pixels": tracked.settings.spacing,
         "subset_pixels": tracked.tracker.subset(),
         "points": tracked.points(),
         "noise_variance_dark": noise.variance(0.0),
         "noise_variance_growth": noise.growth,
-    });
-    value.as_object().cloned().unwrap_or_default()
+    }))
 }
 
 fn step(tracked: &TrackedImages, frame: &Frame) -> Step {

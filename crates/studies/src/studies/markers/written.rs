@@ -79,10 +79,10 @@ pub fn results_with(
         title: title(field),
         kind: KIND,
         text,
-        defaults: Vec::new(),
         read_warnings: field.warnings.iter().map(ToString::to_string).collect(),
         outcome,
         seconds,
+        ..Results::default()
     }
 }
 

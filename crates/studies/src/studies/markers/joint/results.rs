@@ -62,11 +62,10 @@ pub fn results(
             joint.card.law_name
         ),
         kind: KIND,
-        text: String::new(),
-        defaults: Vec::new(),
         read_warnings: warnings.collect(),
         outcome,
         seconds,
+        ..Results::default()
     }
 }
 
