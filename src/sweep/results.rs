@@ -354,7 +354,7 @@ fn band(forces: &[&Statistics], along: Steps) -> Option<LineChart> {
         LineChart::new(
             "Forces of all runs",
             Axis::new(along.head(), Scale::Interval),
-            Axis::linear("force [N]"),
+            "force [N]",
             lines,
         )
     })

@@ -162,7 +162,7 @@ fn picture(plates: &[Trials]) -> Figure {
         line(label, &noise, &error, colour, Stroke::Marked)
     };
     let (x, y) = (
-        Axis::linear("noise of each component [mm]"),
+        "noise of each component [mm]",
         Axis::logarithmic("error of the displacement, median [mm]"),
     );
     let before = |trials: &Trials| trials.spread(|trial| trial.before).median;

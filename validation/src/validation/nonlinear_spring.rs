@@ -12,7 +12,7 @@ use super::case::{
 use crate::corrector::{Corrector, CorrectorSettings, Function, Linearisation, Solver};
 use crate::document::{Bound, Section};
 use crate::error::Error;
-use crate::results::{Axis, LineChart, Stroke};
+use crate::results::{LineChart, Stroke};
 use crate::solve::SparseRows;
 use crate::units::Dimension;
 
@@ -131,8 +131,8 @@ fn figures(forces: &[f64], exact: &[f64], iterates: &[&[f64]], psi: &[f64]) -> V
         |label: &str, values: &[f64], colour, stroke| line(label, forces, values, colour, stroke);
     let motion = LineChart::new(
         "Parabolic spring from a linear trial",
-        Axis::linear("force [N]"),
-        Axis::linear("displacement [mm]"),
+        "force [N]",
+        "displacement [mm]",
         vec![
             line("exact", exact, [30, 30, 30], Stroke::Solid),
             line("uncorrected", iterates[0], [213, 94, 0], Stroke::Solid),
@@ -147,8 +147,8 @@ fn figures(forces: &[f64], exact: &[f64], iterates: &[&[f64]], psi: &[f64]) -> V
     );
     let multipliers = LineChart::new(
         "Lagrange multipliers of f − k u² = 0",
-        Axis::linear("force [N]"),
-        Axis::linear("multiplier ζ [mm²/N]"),
+        "force [N]",
+        "multiplier ζ [mm²/N]",
         vec![line("ζ", psi, [204, 121, 167], Stroke::Marked)],
     );
     vec![

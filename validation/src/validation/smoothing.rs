@@ -319,7 +319,7 @@ fn picture(noisy: &[Noisy]) -> Figure {
         line(label, &noise, &deviation, colour, Stroke::Marked)
     };
     let (x, y) = (
-        Axis::linear("noise at every node [mm]"),
+        "noise at every node [mm]",
         Axis::logarithmic("deviation, relative L2 [%]"),
     );
     let lines = vec![

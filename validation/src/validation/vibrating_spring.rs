@@ -16,7 +16,7 @@ use super::plate::CORRECTOR;
 use crate::corrector::Corrector;
 use crate::document::{Bound, Section};
 use crate::error::{Error, SolveFault};
-use crate::results::{Axis, LineChart, Stroke};
+use crate::results::{LineChart, Stroke};
 use crate::solve::vector::{difference, dot};
 use crate::statistics::Estimate;
 use crate::units::Dimension;
@@ -308,7 +308,7 @@ fn motion_figure(times: &[f64], exact: &[f64], data: &[f64], corrected: &[f64]) 
         line("exact", times, exact, [30, 30, 30], Stroke::Solid),
         line("corrected", times, corrected, [0, 114, 178], Stroke::Dashed),
     ];
-    let (x, y) = (Axis::linear("time [s]"), Axis::linear("displacement [mm]"));
+    let (x, y) = ("time [s]", "displacement [mm]");
     Figure::new(
         "vibrating_spring.png",
         "Figure 3 of the publication: exact, disturbed and corrected motion.",
@@ -317,7 +317,7 @@ fn motion_figure(times: &[f64], exact: &[f64], data: &[f64], corrected: &[f64]) 
 }
 
 fn multiplier_figure(times: &[f64], psi: &[f64]) -> Figure {
-    let (x, y) = (Axis::linear("time [s]"), Axis::linear("multiplier ζ [mm]"));
+    let (x, y) = ("time [s]", "multiplier ζ [mm]");
     let lines = vec![line("ζ", times, psi, [204, 121, 167], Stroke::Solid)];
     Figure::new(
         "vibrating_spring_multipliers.png",

@@ -2,7 +2,7 @@
 
 use eframe::egui::{Grid, RichText, Ui};
 
-use gelbench_report::results::{Axis, Finding, Line, LineChart, Stroke, from_rest};
+use gelbench_report::results::{Finding, Line, LineChart, Stroke, from_rest};
 
 use crate::logic::engine::Fault;
 use crate::logic::scene::Model;
@@ -21,8 +21,7 @@ pub fn curve(table: &Table) -> LineChart {
         Line::new(model.name(), points, model.colour(), Stroke::Points)
     };
     let lines = Model::ALL.into_iter().filter(shown).map(line).collect();
-    let x = Axis::linear("stretch [–]");
-    LineChart::new("", x, Axis::linear("force along X [N]"), lines)
+    LineChart::new("", "stretch [–]", "force along X [N]", lines)
 }
 
 /// The width that the table takes without the moment.

@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use super::stress_unit::readable;
-use super::{Axis, Drawing, Line, LineChart, PALETTE, Scale, Stroke, material_chart};
+use super::{Axis, Drawing, Line, LineChart, PALETTE, Stroke, material_chart};
 use crate::material::Card;
 use crate::material::curve::far_end;
 use crate::statistics::extremes;
@@ -68,7 +68,7 @@ fn over_time(card: &Card) -> LineChart {
         ..LineChart::new(
             "Modulus after a sudden small stretch",
             Axis::logarithmic("time [s]"),
-            Axis::linear("E(t) [MPa]"),
+            "E(t) [MPa]",
             lines,
         )
     }
@@ -98,7 +98,7 @@ fn over_frequency(card: &Card) -> LineChart {
         band: band.map(|range| (range, "frequencies of the data".to_owned())),
         ..LineChart::new(
             "Storage and loss modulus",
-            Axis::new("frequency [Hz]", Scale::Logarithmic),
+            Axis::logarithmic("frequency [Hz]"),
             Axis::logarithmic("modulus [MPa]"),
             lines,
         )
@@ -139,12 +139,7 @@ fn loops(card: &Card) -> Option<LineChart> {
     let largest = lines[0].points.iter();
     let unit = readable(largest.fold(0.0, |most: f64, point| most.max(point[1].abs())));
     unit.scale(&mut lines);
-    let y = Axis::linear(&format!("nominal stress [{}]", unit.name));
-    let x = Axis::new("stretch λ [–]", Scale::Interval);
-    Some(LineChart::new(
-        "Uniaxial loading and unloading",
-        x,
-        y,
-        lines,
-    ))
+    let y = format!("nominal stress [{}]", unit.name);
+    let title = "Uniaxial loading and unloading";
+    Some(LineChart::new(title, Axis::stretch(), &*y, lines))
 }

@@ -41,11 +41,6 @@ impl Axis {
         }
     }
 
-    /// A linear axis.
-    pub fn linear(label: &str) -> Self {
-        Self::new(label, Scale::Linear)
-    }
-
     /// An axis of stretches.
     pub fn stretch() -> Self {
         Self::new("stretch λ [–]", Scale::Interval)
@@ -54,6 +49,13 @@ impl Axis {
     /// A logarithmic axis.
     pub fn logarithmic(label: &str) -> Self {
         Self::new(label, Scale::Logarithmic)
+    }
+}
+
+/// A linear axis.
+impl From<&str> for Axis {
+    fn from(label: &str) -> Self {
+        Self::new(label, Scale::Linear)
     }
 }
 
@@ -169,11 +171,16 @@ pub struct LineChart {
 
 impl LineChart {
     /// A chart without a band.
-    pub fn new(title: impl Into<String>, x: Axis, y: Axis, lines: Vec<Line>) -> Self {
+    pub fn new(
+        title: impl Into<String>,
+        x: impl Into<Axis>,
+        y: impl Into<Axis>,
+        lines: Vec<Line>,
+    ) -> Self {
         Self {
             title: title.into(),
-            x,
-            y,
+            x: x.into(),
+            y: y.into(),
             lines,
             band: None,
             notes: Vec::new(),

@@ -51,12 +51,11 @@ pub fn material_chart(card: &Card) -> LineChart {
         ));
     }
     let x = Axis::new("stretch λ, in shear 1 + γ [–]", Scale::Interval);
-    let y = Axis::linear("nominal stress [MPa]");
     LineChart {
         band: card
             .range_is_stated
             .then(|| ([low, high], "range of the card".to_owned())),
-        ..LineChart::new(&card.title, x, y, lines)
+        ..LineChart::new(&card.title, x, "nominal stress [MPa]", lines)
     }
 }
 
@@ -76,6 +75,6 @@ pub fn comparison_chart(cards: &[Card]) -> LineChart {
         Line::new(&card.name, points, PALETTE[index % PALETTE.len()], stroke)
     };
     let lines = cards.iter().enumerate().map(line).collect();
-    let y = Axis::linear("nominal stress [MPa]");
+    let y = "nominal stress [MPa]";
     LineChart::new("Uniaxial tension", Axis::stretch(), y, lines)
 }

@@ -167,8 +167,8 @@ fn spread(points: Vec<[f64; 2]>, scale: Scale) -> Vec<[f64; 2]> {
 fn chart(title: String, x: Axis, stress: &str, largest: f64, mut lines: Vec<Line>) -> LineChart {
     let unit = readable(largest);
     unit.scale(&mut lines);
-    let y = Axis::linear(&format!("{stress} [{}]", unit.name));
-    LineChart::new(title, x, y, lines)
+    let y = format!("{stress} [{}]", unit.name);
+    LineChart::new(title, x, &*y, lines)
 }
 
 fn residual_chart(x: Axis, lines: Vec<Line>) -> LineChart {

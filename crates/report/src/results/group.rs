@@ -101,8 +101,8 @@ pub fn group_picture(groups: &[NamedGroup]) -> Drawing {
             1 => format!("mean of specimens, {}", groups[0].mean.law.name),
             _ => format!("mean of specimens along axis {}, both axes alike", axis + 1),
         };
-        let y = Axis::linear(&format!("nominal stress [{}]", unit.name));
-        (LineChart::new(title, Axis::stretch(), y, lines), 380)
+        let y = format!("nominal stress [{}]", unit.name);
+        (LineChart::new(title, Axis::stretch(), &*y, lines), 380)
     });
     Drawing::Charts(charts.collect())
 }

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::{Axis, Drawing, Line, LineChart, PALETTE, Stroke};
+use super::{Drawing, Line, LineChart, PALETTE, Stroke};
 use crate::identification::{Argument, Function, Identification, Recording};
 
 const INK: [u8; 3] = [60, 60, 60];
@@ -26,17 +26,17 @@ pub fn identification_picture(identification: &Identification, recording: &Recor
         force(i) - viscous(i)
     });
     let damping = secants(&motion.rate, over, &|i| force(i) - elastic(i));
-    let chart = |title: &str, x: &str, y: &str, lines| {
-        LineChart::new(title, Axis::linear(x), Axis::linear(y), lines)
-    };
     let stiffness = curves(&identification.stiffness, stiffness, PALETTE[0]);
     let damping = curves(&identification.damping, damping, PALETTE[1]);
     Drawing::Charts(vec![
         (
-            chart("Spring K(·)", "extension x [mm]", "K [N/mm]", stiffness),
+            LineChart::new("Spring K(·)", "extension x [mm]", "K [N/mm]", stiffness),
             340,
         ),
-        (chart("Dashpot D(·)", label, "D [N·s/mm]", damping), 340),
+        (
+            LineChart::new("Dashpot D(·)", label, "D [N·s/mm]", damping),
+            340,
+        ),
         (residuals(identification, recording), 260),
     ])
 }
@@ -108,12 +108,7 @@ fn residuals(identification: &Identification, recording: &Recording) -> LineChar
         ),
     ];
     let title = "Residuals: measured less fitted, over the noise";
-    LineChart::new(
-        title,
-        Axis::linear("time [s]"),
-        Axis::linear("residual [–]"),
-        lines,
-    )
+    LineChart::new(title, "time [s]", "residual [–]", lines)
 }
 
 /// All numbers of an identification. Numbers that do not exist are `null`.

@@ -159,7 +159,7 @@ impl Motions {
             line("springs", &self.springs, PALETTE[1], Stroke::Solid),
             line("corrected", &self.corrected, PALETTE[0], Stroke::Dashed),
         ];
-        let (x, y) = (Axis::linear("time [s]"), Axis::linear("displacement [mm]"));
+        let (x, y) = ("time [s]", "displacement [mm]");
         let chart = LineChart::new("A released plate: the free end", x, y, lines);
         let caption = "Displacement of the middle of the free end.";
         Figure::new("motion_correction.png", caption, chart)
@@ -182,7 +182,7 @@ impl Motions {
             line("corrected", &self.corrected, PALETTE[0]),
         ];
         let title = "Deviation from the finite elements over the amplitude of the motion";
-        let (x, y) = (Axis::linear("time [s]"), Axis::logarithmic("deviation [%]"));
+        let (x, y) = ("time [s]", Axis::logarithmic("deviation [%]"));
         Figure::new(
             "motion_correction_error.png",
             "Deviation from the finite elements against time.",

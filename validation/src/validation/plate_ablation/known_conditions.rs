@@ -153,7 +153,7 @@ pub fn compare(fields: &Fields, progress: Progress, outcome: &mut Outcome) -> Re
         .blocks
         .extend([Block::paragraph(text), table(head, rows)]);
     let (x, y) = (
-        Axis::linear("step"),
+        "step",
         Axis::logarithmic("departure from affine, relative L2 [%]"),
     );
     let lines: Vec<Line> = corrections.iter().map(Correction::line).collect();

@@ -7,8 +7,8 @@ use crate::dynamics::{EnergyBalance, Instant};
 use crate::mesh::NodalField;
 use crate::results::models::CORRECTED;
 use crate::results::{
-    Animation, Axis, Content, Drawing, FieldFigure, Figure, Frame, Grid, GridSeries, Line,
-    LineChart, PALETTE, Panel, Stroke, Table, springs_csv,
+    Animation, Content, Drawing, FieldFigure, Figure, Frame, Grid, GridSeries, Line, LineChart,
+    PALETTE, Panel, Stroke, Table, springs_csv,
 };
 use crate::studies::points::Probe;
 use crate::studies::series::{ModelSeries, larger_axis, stress_figures};
@@ -17,10 +17,6 @@ use crate::units::brief;
 
 /// How a model's lines are drawn.
 const STROKES: [Stroke; 2] = [Stroke::Dashed, Stroke::Solid];
-
-fn chart(title: &str, x: &str, y: &str, lines: Vec<Line>) -> LineChart {
-    LineChart::new(title, Axis::linear(x), Axis::linear(y), lines)
-}
 
 /// Two charts of the same height, one below the other.
 fn pair(upper: LineChart, lower: LineChart) -> Drawing {
@@ -133,7 +129,7 @@ fn force_figure(sheet: &MovingSheet, motions: &Motions, file: String) -> Option<
     let along = ["x", "y"][axis];
     let (name, moved) = (sheet.measured_name(), sheet.moved_axis(&motions.elements));
     let title = format!("Force of the {}", name.replace('`', ""));
-    let chart_of = |label: &str, lines| chart(&title, label, "force [N]", lines);
+    let chart_of = |label: &str, lines| LineChart::new(&title, label, "force [N]", lines);
     let models = motions.models();
     let in_time = |model: &ModelMotion| {
         let instants = model.instants().iter().zip(&model.groups);
@@ -182,7 +178,7 @@ fn phase(model: &ModelMotion, probe: &Probe, axis: usize) -> LineChart {
         )
     });
     let title = format!("Phase of the probe {}, {}", probe.name, model.style().name);
-    chart(
+    LineChart::new(
         &title,
         "displacement [mm]",
         "velocity [mm/s]",
@@ -214,7 +210,7 @@ fn probes(sheet: &MovingSheet, motions: &Motions, axis: usize) -> LineChart {
             Line::new(label, points, colour, stroke)
         }));
     }
-    chart("Displacement of the probes", "time [s]", ALONG[axis], lines)
+    LineChart::new("Displacement of the probes", "time [s]", ALONG[axis], lines)
 }
 
 fn energy(model: &ModelMotion) -> LineChart {
@@ -231,7 +227,7 @@ fn energy(model: &ModelMotion) -> LineChart {
         Line::new(*name, points, colour, Stroke::Solid)
     });
     let title = format!("Energies of the {}", model.style().in_words());
-    chart(&title, "time [s]", "energy [mJ]", lines.collect())
+    LineChart::new(&title, "time [s]", "energy [mJ]", lines.collect())
 }
 
 /// What the pictures of the sheets show.

@@ -9,7 +9,7 @@ use super::results::models::Models;
 use super::results::verdict::Deviation;
 use crate::problem::GroupState;
 use crate::results::{
-    Array, Axis, Content, Drawing, FieldFigure, Figure, Grid, GridSeries, Line, LineChart, Panel,
+    Array, Content, Drawing, FieldFigure, Figure, Grid, GridSeries, Line, LineChart, Panel,
     SheetField, Stroke, from_rest, material_chart, mesh_outlines, springs_csv,
 };
 use crate::studies::pictures::Shown;
@@ -183,8 +183,7 @@ fn chart_over_factors(
         (points.len() > 1).then(|| Line::new(model.style.name, points, model.style.colour, stroke))
     };
     let lines = DRAWN.into_iter().filter_map(line).collect();
-    let x = Axis::linear(specimen.along.head());
-    LineChart::new(title, x, Axis::linear(y), lines)
+    LineChart::new(title, specimen.along.head(), y, lines)
 }
 
 /// The displacement that is measured over the load factor; `None` where it is a force.

@@ -40,7 +40,7 @@ pub fn deviations_chart(
         let lines: Vec<Line> = kinds.into_iter().filter_map(line).collect();
         let y = Axis::logarithmic(&format!("{name} [%]"));
         let title = format!("Deviation of the {name} from the finite elements");
-        let chart = LineChart::new(title, Axis::linear(specimen.along.head()), y, lines);
+        let chart = LineChart::new(title, specimen.along.head(), y, lines);
         (!chart.lines.is_empty()).then_some((chart, 320))
     });
     let charts: Vec<_> = charts.collect();
@@ -68,7 +68,7 @@ pub fn residuals_chart(specimen: &Specimen, models: &Models) -> Option<(String, 
         let lines: Vec<Line> = kinds.iter().filter_map(line).collect();
         let y = Axis::logarithmic(quantity);
         let title = format!("{title} at {at}");
-        let chart = LineChart::new(title, Axis::linear("iteration"), y, lines);
+        let chart = LineChart::new(title, "iteration", y, lines);
         (!chart.lines.is_empty()).then_some((chart, 340))
     };
     let forces = [ModelKind::MassSpring, ModelKind::FiniteElement];

@@ -9,7 +9,7 @@ use crate::document::{
     ColumnNames, MACHINE_DISPLACEMENTS, MACHINE_FORCES, Section, Table, column_meaning,
 };
 use crate::error::{Error, suggestion};
-use crate::results::{Axis, Figure, Line, LineChart, Stroke};
+use crate::results::{Figure, Line, LineChart, Stroke};
 use crate::units::Dimension;
 
 /// What a column has.
@@ -143,9 +143,9 @@ impl MeasuredFields<'_> {
         let points = points.map(|[moved, force]| [percent * moved, *force]);
         let mut lines = vec![Line::new("measured", points, [120; 3], Stroke::Points)];
         lines.extend(self.lines(|state| percent * self.moved(state, &measured.over, axis)));
-        let y = Axis::linear(&format!("force along {along} [N]"));
+        let y = format!("force along {along} [N]");
         let title = format!("Measured and computed force of {}", specimen.group);
-        let chart = LineChart::new(title, Axis::linear(&x), y, lines);
+        let chart = LineChart::new(title, &*x, &*y, lines);
         let file = &measured.file;
         let caption = format!("The measured curve of {file} over those of the models.");
         let name = format!("{}_measured.png", specimen.name);

@@ -6,8 +6,8 @@ use super::results::models::Models;
 use crate::document::write_records;
 use crate::problem::GroupState;
 use crate::results::{
-    Axis, Content, Deformed, Drawing, Figure, Line, LineChart, Position, SheetField, Stroke,
-    from_rest, positions,
+    Content, Deformed, Drawing, Figure, Line, LineChart, Position, SheetField, Stroke, from_rest,
+    positions,
 };
 use crate::studies::file_stem;
 use crate::studies::series::{DRAWN, ModelSeries, larger_axis};
@@ -229,8 +229,7 @@ impl<'a> MeasuredFields<'a> {
         let lines = lines.filter(|line| !line.points.is_empty()).collect();
         let name = &self.specimen.measurements.probes[probe].name;
         let title = format!("{}: {name}", field.title());
-        let x = Axis::linear(along.head());
-        LineChart::new(title, x, Axis::linear(field.quantity()), lines)
+        LineChart::new(title, along.head(), field.quantity(), lines)
     }
 
     /// The models that are drawn, by their numbers, the corrected field last.
@@ -264,8 +263,8 @@ impl<'a> MeasuredFields<'a> {
             }
         }
         let title = format!("{} at {}", field.title(), self.specimen.describe_step(step));
-        let x = Axis::linear(&format!("distance along {} at rest [mm]", line.name));
-        LineChart::new(title, x, Axis::linear(field.quantity()), lines)
+        let x = format!("distance along {} at rest [mm]", line.name);
+        LineChart::new(title, &*x, field.quantity(), lines)
     }
 
     fn extensometer_chart(&self, index: usize, extensometer: &Extensometer) -> LineChart {
@@ -278,8 +277,7 @@ impl<'a> MeasuredFields<'a> {
             self.specimen.group, extensometer.name
         );
         let y = format!("force along {} [N]", ["x", "y"][self.force_axis()]);
-        let x = Axis::linear("stretch of the extensometer [%]");
-        LineChart::new(title, x, Axis::linear(&y), lines)
+        LineChart::new(title, "stretch of the extensometer [%]", &*y, lines)
     }
 }
 

@@ -70,14 +70,14 @@ fn chart(words: &str, kind: usize, lines: usize) -> LineChart {
     };
     let y = format!("{words} [MPa]");
     let y = if kind.is_multiple_of(2) {
-        Axis::linear(&y)
+        Axis::from(&*y)
     } else {
         Axis::logarithmic(&y)
     };
     let lines = (0..lines).map(line).collect();
     LineChart {
         notes: vec![format!("{words} = 3.14 ± 0.02 MPa")],
-        ..LineChart::new(words, Axis::linear(&format!("{words} [mm]")), y, lines)
+        ..LineChart::new(words, &*format!("{words} [mm]"), y, lines)
     }
 }
 

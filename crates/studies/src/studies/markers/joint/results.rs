@@ -6,8 +6,8 @@ use super::report::{self, ForceRow};
 use super::{CorrectedSpecimen, JointResults, JointStudy, card};
 use crate::estimation::{ForceScatter, JointEstimate};
 use crate::results::{
-    Axis, Content, Figure, Finding, Line, LineChart, Material, Outcome, PALETTE, Results, Stroke,
-    Table, object,
+    Content, Figure, Finding, Line, LineChart, Material, Outcome, PALETTE, Results, Stroke, Table,
+    object,
 };
 use crate::statistics::{extremes, larger};
 use crate::studies::markers::json::of_estimate;
@@ -215,8 +215,8 @@ fn figure(rows: &[ForceRow]) -> Option<Figure> {
     }
     let chart = LineChart::new(
         "Forces of left-out frames",
-        Axis::linear("measured force [N]"),
-        Axis::linear("predicted force [N]"),
+        "measured force [N]",
+        "predicted force [N]",
         lines,
     );
     Some(Figure::new(
