@@ -9,7 +9,9 @@ use super::table::{heads, names};
 use gelbench_base::statistics::{quantile, rank_correlation};
 use gelbench_base::units::number;
 use gelbench_report::results::models::{CORRECTED, FINITE_ELEMENTS, MASS_SPRING, ModelStyle};
-use gelbench_report::results::{Axis, Block, Figure, Line, LineChart, PALETTE, Scale, Stroke};
+use gelbench_report::results::{
+    Axis, Block, Figure, Line, LineChart, PALETTE, Scale, Stroke, Table, or_dash,
+};
 use gelbench_studies::studies::Steps;
 
 /// With fewer runs there is neither a spread nor a correlation.
@@ -150,37 +152,19 @@ fn at_last_step(rows: &[Row]) -> Vec<Row> {
 /// The report.
 pub fn blocks(title: &str, keys: &[String], rows: &[Row], figures: &[Figure]) -> Vec<Block> {
     let all = statistics(&at_last_step(rows));
-    let mut head = vec![
-        "figure of the last step",
-        "runs",
-        "mean",
-        "standard deviation",
-        "5 %",
-        "median",
-        "95 %",
-    ];
-    let correlations: Vec<String> = keys
-        .iter()
-        .map(|key| format!("rank correlation with {key}"))
-        .collect();
-    head.extend(correlations.iter().map(String::as_str));
-    let cell = |value: f64| {
-        if value.is_finite() {
-            number(value)
-        } else {
-            "–".to_owned()
-        }
-    };
-    let lines = without_rounding(&all).map(|one| {
-        let [low, middle, high] = one.quantiles;
-        let numbers = [one.mean, one.standard_deviation, low, middle, high];
-        let numbers = numbers.iter().chain(&one.rank_correlations);
-        let first = [one.name.clone(), one.runs.to_string()];
-        first
-            .into_iter()
-            .chain(numbers.map(|value| cell(*value)))
-            .collect()
-    });
+    let cell = |value: f64| or_dash(value.is_finite().then_some(value), number);
+    let mut table = Table::of(without_rounding(&all))
+        .column("figure of the last step", |one| one.name.clone())
+        .column("runs", |one| one.runs.to_string())
+        .column("mean", |one| cell(one.mean))
+        .column("standard deviation", |one| cell(one.standard_deviation))
+        .column("5 %", |one| cell(one.quantiles[0]))
+        .column("median", |one| cell(one.quantiles[1]))
+        .column("95 %", |one| cell(one.quantiles[2]));
+    for (index, key) in keys.iter().enumerate() {
+        let head = format!("rank correlation with {key}");
+        table = table.column(head, |one| cell(one.rank_correlations[index]));
+    }
     let varied = heads(keys, rows);
     let mut blocks = vec![
         Block::heading(title),
@@ -189,7 +173,7 @@ pub fn blocks(title: &str, keys: &[String], rows: &[Row], figures: &[Figure]) ->
             rows.len(),
             varied.join(", ")
         )),
-        Block::table(&head, lines),
+        table.block(),
         Block::paragraph(format!(
             "Quantiles are interpolated linearly between runs. Rank correlations are Spearman's, from at least {FEWEST} runs: 1 if a figure always \
              rises with a key, −1 if it always falls."
