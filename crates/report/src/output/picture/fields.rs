@@ -126,8 +126,7 @@ impl FieldFigure {
         };
         let contour = Pen::new([0; 3], CONTOUR).covering(CONTOUR_COVER);
         for (index, panel) in self.panels.iter().enumerate() {
-            let position = |position: [f64; 2]| layout.position(index, position);
-            let rest = placed(&panel.surface.rest, &position);
+            let rest = layout.placed(index, &panel.surface.rest);
             let pen = Pen::new(look.rest(), AT_REST);
             if let Some(rest) = Mark::lines(rest.iter().map(|line| &line[..]), pen) {
                 painter.draw(&rest);
@@ -135,7 +134,8 @@ impl FieldFigure {
             let mut contours = Vec::new();
             let triangles = panel.surface.triangles.iter();
             for (triangle, values) in triangles.zip(panel.corners()) {
-                let corners = triangle.map(|point| position(panel.surface.points[point as usize]));
+                let corners = triangle
+                    .map(|point| layout.position(index, panel.surface.points[point as usize]));
                 painter.shade(corners, values, &share, &table);
                 if has_contours(panel) {
                     let levels = levels.iter();
@@ -143,7 +143,7 @@ impl FieldFigure {
                 }
             }
             painter.lines_above(contours.iter().map(|line| &line[..]), contour);
-            let outline = placed(&panel.surface.outline, &position);
+            let outline = layout.placed(index, &panel.surface.outline);
             let pen = Pen::new(look.ink(), OUTLINE);
             painter.lines_above(outline.iter().map(|line| &line[..]), pen);
         }
@@ -161,11 +161,6 @@ fn short(words: &str, width: f64, look: Look) -> &str {
 fn has_contours(panel: &Panel) -> bool {
     let is_smooth = matches!(panel.values, Values::AtPoints(_));
     is_smooth && panel.surface.triangles.len() <= MOST_CONTOURED
-}
-
-fn placed(lines: &[Vec<[f64; 2]>], position: &dyn Fn([f64; 2]) -> [f64; 2]) -> Vec<Vec<[f64; 2]>> {
-    let positions = |line: &Vec<[f64; 2]>| line.iter().map(|at| position(*at)).collect();
-    lines.iter().map(positions).collect()
 }
 
 /// The line within a triangle on which a linear field has a value.

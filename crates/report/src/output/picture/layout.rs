@@ -120,6 +120,15 @@ impl Layout {
         ]
     }
 
+    /// Lines on the plate of a panel.
+    pub fn placed(&self, panel: usize, lines: &[Vec<[f64; 2]>]) -> Vec<Vec<[f64; 2]>> {
+        let position = |at: &[f64; 2]| self.position(panel, *at);
+        let lines = lines.iter();
+        lines
+            .map(|line| line.iter().map(position).collect())
+            .collect()
+    }
+
     /// A title, and the axes of so many panels.
     pub fn draw(&self, sheet: &mut Sheet, title: &str, panels: usize) {
         let room = self.width - self.left - EDGE;

@@ -27,7 +27,10 @@ impl Letters {
 
     /// How wide words are in points.
     pub fn width(self, words: &str) -> f64 {
-        width(words, self)
+        let face = Face::of(self);
+        let advances = words.chars().map(|letter| face.font.glyph_id(letter));
+        let thousandths: f32 = advances.map(|letter| face.advance(letter)).sum();
+        f64::from(thousandths) / 1000.0 * f64::from(self.size)
     }
 
     /// From one line of words to the next.
@@ -88,14 +91,6 @@ impl Face {
     pub fn advance(&self, letter: GlyphId) -> f32 {
         1000.0 * self.font.h_advance_unscaled(letter) / self.units_per_em()
     }
-}
-
-/// How wide words are in points.
-pub(super) fn width(words: &str, letters: Letters) -> f64 {
-    let face = Face::of(letters);
-    let advances = words.chars().map(|letter| face.font.glyph_id(letter));
-    let thousandths: f32 = advances.map(|letter| face.advance(letter)).sum();
-    f64::from(thousandths) / 1000.0 * f64::from(letters.size)
 }
 
 /// Words as curves from the beginning of their base line on, which may run upwards; `None` of words without any.
@@ -173,7 +168,7 @@ mod tests {
     #[test]
     fn letters_are_as_wide_as_they_are_measured_from_their_start_on() {
         let letters = Letters::regular(20);
-        let width = width("HIH", letters) as f32;
+        let width = letters.width("HIH") as f32;
         let drawn = |is_turned| {
             let path = curves("HIH", letters, [100.0, 50.0], is_turned);
             path.unwrap().bounds()

@@ -71,14 +71,8 @@ impl MeshFigure {
     }
 
     fn paint(&self, painter: &mut Painter, layout: &Layout) {
-        let placed = |lines: &[Vec<[f64; 2]>]| -> Vec<Vec<[f64; 2]>> {
-            let lines = lines.iter();
-            lines
-                .map(|line| line.iter().map(|at| layout.position(0, *at)).collect())
-                .collect()
-        };
         let few = self.cells.len() < 5_000;
-        let cells = placed(&self.cells);
+        let cells = layout.placed(0, &self.cells);
         let groups = || self.groups.iter().zip(0..);
         for (group, index) in groups().filter(|(group, _)| !group.cells.is_empty()) {
             let table = [GroupLook::of(layout.look, group, index).colour];
@@ -91,7 +85,7 @@ impl MeshFigure {
         painter.lines_above(outlines, Pen::new(layout.look.ink(), width));
         for (group, index) in groups().filter(|(group, _)| group.cells.is_empty()) {
             let mark = GroupLook::of(layout.look, group, index);
-            let lines = placed(&group.lines);
+            let lines = layout.placed(0, &group.lines);
             let width = if mark.is_dots { 6.0 } else { 3.0 };
             let mut draw = |colour, width| {
                 painter.lines_above(lines.iter().map(|line| &line[..]), Pen::new(colour, width));

@@ -1,5 +1,7 @@
 //! Curves and clouds of more points than a picture can show.
 
+use crate::mesh::geometry::bounding_box;
+
 /// A point by its positions on both axes.
 type Point = (f64, f64);
 
@@ -21,13 +23,7 @@ struct Raster {
 
 impl Raster {
     fn of(points: &[Point]) -> Self {
-        let start = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-        let (low, high) = points.iter().fold(start, |(low, high), (x, y)| {
-            (
-                [low[0].min(*x), low[1].min(*y)],
-                [high[0].max(*x), high[1].max(*y)],
-            )
-        });
+        let [low, high] = bounding_box(points.iter().map(|(x, y)| [*x, *y]));
         Self {
             low,
             step: [(high[0] - low[0]) / COLUMNS, (high[1] - low[1]) / ROWS],
