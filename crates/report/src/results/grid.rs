@@ -132,40 +132,26 @@ pub struct NamedGrid {
 
 impl GridSeries {
     /// Grids with their numbers and times; the numbers in the names of the files have the given number of digits.
-    pub fn numbered(
-        name: &str,
-        digits: usize,
-        grids: impl IntoIterator<Item = (usize, f64, Grid)>,
-    ) -> Self {
-        let named = |(number, time, grid)| NamedGrid {
+    fn numbered(name: &str, digits: usize, grids: impl IntoIterator<Item = (f64, Grid)>) -> Self {
+        let named = |(number, (time, grid)): (usize, _)| NamedGrid {
             name: format!("{name}_{number:0digits$}"),
             time: Some(time),
             grid,
         };
         Self {
             name: name.to_owned(),
-            grids: grids.into_iter().map(named).collect(),
+            grids: (1..).zip(grids).map(named).collect(),
         }
     }
 
     /// Grids at load factors or stretches: `NAME_001` and so on.
     pub fn steps(name: &str, grids: impl IntoIterator<Item = (f64, Grid)>) -> Self {
-        let grids = grids.into_iter().zip(1..);
-        Self::numbered(
-            name,
-            3,
-            grids.map(|((time, grid), number)| (number, time, grid)),
-        )
+        Self::numbered(name, 3, grids)
     }
 
     /// Grids at instants: `NAME_00001` and so on.
     pub fn instants(name: &str, grids: impl IntoIterator<Item = (f64, Grid)>) -> Self {
-        let grids = grids.into_iter().zip(1..);
-        Self::numbered(
-            name,
-            5,
-            grids.map(|((time, grid), number)| (number, time, grid)),
-        )
+        Self::numbered(name, 5, grids)
     }
 
     /// A single grid.
