@@ -203,34 +203,29 @@ impl Reference {
 
     /// The error of what is measured by three meshes at a load factor in %, where there are three.
     pub fn three_meshes_percent(&self, step: usize) -> Option<f64> {
-        let [coarse, middle] = &self.coarser[..] else {
-            return None;
-        };
-        if !self.rounds.is_empty() {
+        if self.coarser.len() != 2 || !self.rounds.is_empty() {
             return None;
         }
         if self.measures_none(step) {
             return Some(0.0);
         }
-        let all = [coarse, middle, &self.finest].map(|solution| self.measured.at(solution, step));
-        let [Some(coarse), Some(middle), Some(fine)] = all else {
-            return None;
-        };
-        let estimate = richardson([coarse, middle, fine]);
+        let values @ [_, middle, fine] = self.on_three_meshes(step)?;
+        let estimate = richardson(values);
         let last = 100.0 * ((fine - middle) / estimate.extrapolated).abs();
         Some(self.beside_corners(estimate.error_percent, last))
     }
 
     /// Whether three meshes show an order at a load factor.
     fn converge(&self, step: usize) -> bool {
-        let [coarse, middle] = &self.coarser[..] else {
-            return false;
-        };
-        let all = [coarse, middle, &self.finest].map(|solution| self.measured.at(solution, step));
-        let [Some(coarse), Some(middle), Some(fine)] = all else {
-            return false;
-        };
-        richardson([coarse, middle, fine]).order.is_some()
+        let values = self.on_three_meshes(step);
+        values.is_some_and(|values| richardson(values).order.is_some())
+    }
+
+    /// What is measured on three meshes at a load factor, from coarse to fine; `None` where there are not three.
+    fn on_three_meshes(&self, step: usize) -> Option<[f64; 3]> {
+        let all = self.coarser.iter().chain([&self.finest]);
+        let all: Option<Vec<f64>> = all.map(|one| self.measured.at(one, step)).collect();
+        all?.try_into().ok()
     }
 
     /// An error by the distance of the two finest meshes, which re-entrant corners of the finest one let fall slowly, however the coarse
