@@ -53,7 +53,7 @@ impl Plate {
         let section = root.section("plate");
         let card = read_card(&section, folder);
         let (problem, cells) = sections::read_plate(&section, card.as_ref());
-        let stretch = sections::read_stretch(&section, "stretch");
+        let stretch = section.stretch("stretch", sections::STRETCHES);
         if let Some(card) = card.filter(|_| stretch > 0.0) {
             sections::check_range(&section, "stretch", &[stretch], &card);
         }

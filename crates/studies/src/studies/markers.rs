@@ -156,7 +156,8 @@ impl MarkerStudy {
             doubts,
             unknown_gap,
         } = mesh(&request, &field)?;
-        name_parts(&mut mesh, request.conditions.edge_names());
+        let edges = request.conditions.edges.iter();
+        name_parts(&mut mesh, edges.map(|(name, _)| name.as_str()));
         area::name(&mut mesh, &request.conditions.areas)?;
         request.conditions.suit(&mesh, &field.series)?;
         check_regions(&regions, &mesh)?;

@@ -20,7 +20,7 @@ use crate::units::{Dimension, implausible_sheet};
 pub const MOST_CELLS: usize = 100_000;
 
 /// Stretches that a plate may be given.
-const STRETCHES: Bound = Bound::Range(1e-9, 100.0, "greater than zero, up to 10000 %");
+pub const STRETCHES: Bound = Bound::Range(1e-9, 100.0, "greater than zero, up to 10000 %");
 
 /// Records that a method without a memory is to correct a card which softens.
 pub fn refuse_memory(corrector: &Section, method: &str) {
@@ -194,11 +194,6 @@ fn check_stretch(
             &format!("it was calibrated from {low:.0} to {high:.0} % stretch"),
         );
     }
-}
-
-/// One stretch, as a ratio or in percent.
-pub fn read_stretch(section: &Section<'_>, key: &'static str) -> f64 {
-    section.stretch(key, STRETCHES)
 }
 
 /// How a model is solved.

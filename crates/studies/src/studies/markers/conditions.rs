@@ -76,11 +76,6 @@ pub fn measured_force(
 }
 
 impl Conditions {
-    /// The edges of which something is known.
-    pub(super) fn edge_names(&self) -> impl Iterator<Item = &str> {
-        self.edges.iter().map(|(name, _)| name.as_str())
-    }
-
     /// Whether the mesh has the edges that are named, each once.
     ///
     /// # Errors
