@@ -38,7 +38,7 @@ mod sheet_figures;
 pub mod small_strain;
 mod springs;
 mod state;
-mod stress_unit;
+mod stress_chart;
 mod stretches;
 mod surface;
 mod viscous_stress;

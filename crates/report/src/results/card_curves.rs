@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use super::stress_unit::readable;
+use super::stress_chart::stress_chart;
 use super::{Axis, Drawing, Line, LineChart, PALETTE, Stroke, material_chart};
 use crate::material::Card;
 use crate::material::curve::far_end;
@@ -137,9 +137,7 @@ fn loops(card: &Card) -> Option<LineChart> {
         Line::new("first loading", first, PALETTE[0], Stroke::Solid),
     );
     let largest = lines[0].points.iter();
-    let unit = readable(largest.fold(0.0, |most: f64, point| most.max(point[1].abs())));
-    unit.scale(&mut lines);
-    let y = format!("nominal stress [{}]", unit.name);
-    let title = "Uniaxial loading and unloading";
-    Some(LineChart::new(title, Axis::stretch(), &*y, lines))
+    let largest = largest.fold(0.0, |most: f64, point| most.max(point[1].abs()));
+    let (title, x) = ("Uniaxial loading and unloading", Axis::stretch());
+    Some(stress_chart(title, x, "nominal stress", largest, lines))
 }

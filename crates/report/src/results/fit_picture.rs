@@ -5,7 +5,7 @@ mod tests_alone;
 use std::path::Path;
 
 use super::fit::{notes, title_case};
-use super::stress_unit::readable;
+use super::stress_chart::stress_chart;
 use super::{Axis, Drawing, Line, LineChart, PALETTE, Scale, Stroke};
 use crate::calibration::{Fit, Test, TestData, Times};
 use crate::material::curve::Mode;
@@ -163,19 +163,11 @@ fn spread(points: Vec<[f64; 2]>, scale: Scale) -> Vec<[f64; 2]> {
     kept
 }
 
-/// A chart of stresses in MPa, in the unit that suits the largest of them.
-fn chart(title: String, x: Axis, stress: &str, largest: f64, mut lines: Vec<Line>) -> LineChart {
-    let unit = readable(largest);
-    unit.scale(&mut lines);
-    let y = format!("{stress} [{}]", unit.name);
-    LineChart::new(title, x, &*y, lines)
-}
-
 fn residual_chart(x: Axis, lines: Vec<Line>) -> LineChart {
     let points = lines.iter().flat_map(|line| &line.points);
     let largest = points.fold(0.0, |most: f64, point| most.max(point[1].abs()));
     // Below the stresses, whose axis it shares.
-    chart(String::new(), x, "measured − fitted", largest, lines)
+    stress_chart("", x, "measured − fitted", largest, lines)
 }
 
 /// Data with the fitted stresses, and the residuals below.
@@ -185,7 +177,7 @@ pub fn fit_picture(fit: &Fit, tests: &[TestData]) -> Drawing {
     let largest = tests.iter().map(|test| test.largest_stress);
     let largest = largest.fold(0.0, f64::max);
     let stress = format!("{} stress", fit.stress_measure().title());
-    let over = |title: String, x: Axis, lines| chart(title, x, &stress, largest, lines);
+    let over = |title: String, x, lines| stress_chart(title, x, &stress, largest, lines);
     let softening = fit.softened.as_ref().map_or("", |_| " with softening");
     let law = title_case(fit.law.name);
     let title = format!("{law}{softening} fitted to {}", names(tests));

@@ -2,8 +2,8 @@
 
 use serde_json::{Value, json};
 
-use super::stress_unit::readable;
-use super::{Axis, Drawing, Line, LineChart, PALETTE, Stroke};
+use super::stress_chart::stress_chart;
+use super::{Axis, Drawing, Line, PALETTE, Stroke};
 use crate::calibration::{Fit, Group, GroupState};
 use crate::document::write_records;
 
@@ -92,17 +92,16 @@ pub fn group_picture(groups: &[NamedGroup]) -> Drawing {
     let axes = 0..=axes.unwrap_or(0);
     let states = || groups.iter().flat_map(|group| &group.states);
     let highest = states().map(|state| state.stress.estimate().interval[1]);
-    let unit = readable(highest.fold(0.0, f64::max));
+    let highest = highest.fold(0.0, f64::max);
     let count = axes.clone().count();
     let charts = axes.map(|axis| {
-        let mut lines = curves(groups, axis);
-        unit.scale(&mut lines);
+        let lines = curves(groups, axis);
         let title = match count {
             1 => format!("mean of specimens, {}", groups[0].mean.law.name),
             _ => format!("mean of specimens along axis {}, both axes alike", axis + 1),
         };
-        let y = format!("nominal stress [{}]", unit.name);
-        (LineChart::new(title, Axis::stretch(), &*y, lines), 380)
+        let chart = stress_chart(title, Axis::stretch(), "nominal stress", highest, lines);
+        (chart, 380)
     });
     Drawing::Charts(charts.collect())
 }

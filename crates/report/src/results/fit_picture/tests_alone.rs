@@ -1,7 +1,8 @@
 //! Tests without a fit.
 
-use super::{Course, STRETCH, chart, deformation};
+use super::{Course, STRETCH, deformation};
 use crate::calibration::TestData;
+use crate::results::stress_chart::stress_chart;
 use crate::results::{LineChart, Scale};
 
 /// Tests alone, as they were read, before any law is fitted to them.
@@ -18,14 +19,10 @@ pub fn tests_chart(tests: &[TestData]) -> LineChart {
         .map(|course| course.measured(STRETCH, Scale::Linear));
     let largest = tests.iter().map(|test| test.largest_stress);
     let measure = tests.first().map_or("", |test| test.stress_measure.title());
-    let (title, stress) = (
-        "The tests as they were read".to_owned(),
-        format!("{measure} stress"),
-    );
-    chart(
-        title,
+    stress_chart(
+        "The tests as they were read",
         deformation(tests),
-        &stress,
+        &format!("{measure} stress"),
         largest.fold(0.0, f64::max),
         points.collect(),
     )
