@@ -261,10 +261,6 @@ impl Sites {
     /// What is to be said of sites that cover a window of the specimen alone.
     pub fn window(&self, specimen: &Mesh) -> Option<String> {
         const WHOLE: f64 = 0.9;
-        let sides = |positions: &[[f64; 2]]| {
-            let [low, high] = bounding_box(positions.iter().copied());
-            [0, 1].map(|axis| high[axis] - low[axis])
-        };
         let [extent, full] = [&self.positions, &specimen.nodes].map(|positions| sides(positions));
         let is_window = (0..2).any(|axis| extent[axis] < WHOLE * full[axis]);
         is_window.then(|| {
@@ -330,13 +326,15 @@ impl Sites {
     }
 }
 
+/// The sides of the box around some places.
+fn sides(positions: &[[f64; 2]]) -> [f64; 2] {
+    let [low, high] = bounding_box(positions.iter().copied());
+    [0, 1].map(|axis| high[axis] - low[axis])
+}
+
 /// Whether two meshes have boxes of one size.
 fn same_size(field: &Mesh, specimen: &Mesh) -> Result<(), Mismatch> {
-    let size = |mesh: &Mesh| {
-        let [low, high] = mesh.bounding_box();
-        [0, 1].map(|axis| high[axis] - low[axis])
-    };
-    let (actual, expected) = (size(field), size(specimen));
+    let (actual, expected) = (sides(&field.nodes), sides(&specimen.nodes));
     if (0..2).all(|axis| (actual[axis] / expected[axis] - 1.0).abs() <= NEAR_SIZE) {
         return Ok(());
     }
@@ -347,8 +345,8 @@ fn same_size(field: &Mesh, specimen: &Mesh) -> Result<(), Mismatch> {
 /// field on a small window is not a fault.
 fn near_in_size(positions: &[[f64; 2]], specimen: &Mesh) -> Result<(), Mismatch> {
     let size = |positions: &[[f64; 2]]| {
-        let [low, high] = bounding_box(positions.iter().copied());
-        (high[0] - low[0]).hypot(high[1] - low[1])
+        let [x, y] = sides(positions);
+        x.hypot(y)
     };
     let (actual, expected) = (size(positions), size(&specimen.nodes));
     match unit_ratio(expected / actual).filter(|ratio| *ratio >= 100.0) {
