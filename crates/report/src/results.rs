@@ -42,7 +42,6 @@ mod stress_chart;
 mod stretches;
 mod surface;
 mod viscous_stress;
-mod work;
 pub mod wrinkling;
 
 pub use array::{Array, Components};
@@ -72,7 +71,6 @@ pub use state::{LocalState, cell_states, nodal_states};
 pub use stretches::{BESIDE_CORNERS, Stretches};
 pub use surface::Surface;
 pub use viscous_stress::ViscousStress;
-pub use work::work_blocks;
 
 /// A claim of the publication, and the result found here.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

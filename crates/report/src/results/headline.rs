@@ -2,7 +2,7 @@
 //! largest.
 
 use super::nodal_sheet::NodalSheet;
-use super::{Block, Deformed, LocalState, or_dash};
+use super::{Block, Deformed, LocalState, Table, or_dash};
 use crate::mesh::Mesh;
 use crate::problem::{GroupState, SheetLaws};
 use crate::units::number;
@@ -212,29 +212,23 @@ impl Headline<'_> {
     }
 
     fn forces(&self) -> Block {
-        let (columns, listed) = (self.columns(), self.listed());
-        let head = [self.along, "group"].into_iter();
-        let head = head.chain(columns.iter().map(|((head, _), _)| *head));
-        let row = |step: usize, group: usize| {
-            let (at, groups) = &self.steps[step];
-            let is_held = self.is_held(group);
-            let figure = |((head, value), size): &(Column, f64)| match value(&groups[group]) {
-                _ if !is_held && !DISPLACEMENTS.iter().any(|(name, _)| name == head) => {
-                    "–".to_owned()
-                }
-                small if small.abs() <= NOTHING * size => number(0.0),
-                value => number(value),
-            };
-            let names = [at.clone(), self.groups[group].to_owned()];
-            names
-                .into_iter()
-                .chain(columns.iter().map(figure))
-                .collect()
-        };
+        let listed = self.listed();
         let rows = self.shown().into_iter();
         let rows = rows.flat_map(|step| listed.iter().map(move |group| (step, *group)));
-        let head = head.map(str::to_owned).collect();
-        Block::Table(head, rows.map(|(step, group)| row(step, group)).collect())
+        let mut table = Table::of(rows)
+            .column(self.along, |(step, _)| self.steps[*step].0.clone())
+            .column("group", |(_, group)| self.groups[*group].to_owned());
+        for ((head, value), size) in self.columns() {
+            let is_displacement = DISPLACEMENTS.iter().any(|(name, _)| *name == head);
+            table = table.column(head, |(step, group)| {
+                match value(&self.steps[*step].1[*group]) {
+                    _ if !is_displacement && !self.is_held(*group) => "–".to_owned(),
+                    small if small.abs() <= NOTHING * size => number(0.0),
+                    value => number(value),
+                }
+            });
+        }
+        table.block()
     }
 }
 

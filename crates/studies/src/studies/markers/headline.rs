@@ -9,7 +9,7 @@ use crate::error::Diagnostic;
 use crate::estimation::{EdgeForce, FieldEstimate};
 use crate::markers::Frame;
 use crate::problem::singular_points;
-use crate::results::{Block, Deformed, LoadedSheet};
+use crate::results::{Block, Deformed, LoadedSheet, Table, or_dash};
 use crate::statistics::Estimate;
 use crate::units::{decimals, number};
 
@@ -77,33 +77,29 @@ fn forces(study: &MarkerStudy, estimates: &[FieldEstimate]) -> Block {
     let has_intervals = listed
         .iter()
         .any(|(_, estimate, _)| estimate.has_intervals());
-    let mut head = vec!["frame".to_owned(), "edge".to_owned()];
-    for axis in ["x", "y"] {
-        head.push(format!("force along {axis} [N]"));
-        head.extend(has_intervals.then(|| "95 % interval [N]".to_owned()));
+    let mut table = Table::of(listed)
+        .column("frame", |(frame, ..)| frame.number.to_string())
+        .column("edge", |(.., force)| force.edge.clone());
+    for (axis, name) in ["x", "y"].into_iter().enumerate() {
+        table = table
+            .column(format!("force along {name} [N]"), |(_, estimate, force)| {
+                figure(estimate, &force.force[axis])
+            })
+            .column_if(
+                has_intervals,
+                "95 % interval [N]",
+                |(_, estimate, force)| interval(estimate, &force.force[axis]),
+            );
     }
-    let gap = study.unknown_gap.filter(|_| has_intervals);
-    head.extend(
-        gap.map(|gap| format!("up to, if the edge lies {} mm farther out [N]", number(gap))),
-    );
-    let rows = listed.iter().map(|(frame, estimate, force)| {
-        let mut row = vec![frame.number.to_string(), force.edge.clone()];
-        for along in &force.force {
-            row.push(figure(estimate, along));
-            row.extend(has_intervals.then(|| interval(estimate, along)));
-        }
-        row.extend(gap.map(|_| {
-            let ends = force
-                .force
-                .each_ref()
-                .map(|along| farther_out(estimate, along));
-            let largest = ends.into_iter().flatten();
-            let largest = largest.max_by(|a, b| a.abs().total_cmp(&b.abs()));
-            largest.map_or_else(|| "–".to_owned(), number)
-        }));
-        row
-    });
-    Block::Table(head, rows.collect())
+    if let Some(gap) = study.unknown_gap.filter(|_| has_intervals) {
+        let head = format!("up to, if the edge lies {} mm farther out [N]", number(gap));
+        table = table.column(head, |(_, estimate, force)| {
+            let ends = force.force.iter();
+            let ends = ends.filter_map(|along| farther_out(estimate, along));
+            or_dash(ends.max_by(|a, b| a.abs().total_cmp(&b.abs())), number)
+        });
+    }
+    table.block()
 }
 
 /// A force, zero where it is nothing beside the frame's largest and its interval does not exclude that.

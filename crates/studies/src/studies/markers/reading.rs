@@ -1,7 +1,7 @@
 //! The report on how files were understood.
 
-use crate::markers::{ColumnTaken, Understood};
-use crate::results::Block;
+use crate::markers::Understood;
+use crate::results::{Block, Table};
 
 /// Columns, units, origin and axes of files, as far as there is something to say.
 pub fn blocks(understood: &Understood) -> Vec<Block> {
@@ -21,9 +21,14 @@ pub fn blocks(understood: &Understood) -> Vec<Block> {
         Block::paragraph(words),
     ];
     if !understood.columns.is_empty() {
-        let head = ["quantity", "column", "unit [mm]", "source of the unit"];
-        let rows = understood.columns.iter().map(row);
-        blocks.push(Block::table(&head, rows));
+        let table = Table::of(&understood.columns)
+            .column("quantity", |taken| taken.holds.to_owned())
+            .column("column", |taken| taken.head.clone())
+            .column("unit [mm]", |taken| {
+                taken.unit.map_or(String::new(), |unit| unit.to_string())
+            })
+            .column("source of the unit", |taken| taken.unit_source.to_owned());
+        blocks.push(table.block());
     }
     blocks.extend(
         understood
@@ -31,16 +36,6 @@ pub fn blocks(understood: &Understood) -> Vec<Block> {
             .map(|sketch| Block::Code("text", sketch.to_owned())),
     );
     blocks
-}
-
-fn row(taken: &ColumnTaken) -> Vec<String> {
-    let unit = taken.unit.map_or(String::new(), |unit| unit.to_string());
-    vec![
-        taken.holds.to_owned(),
-        taken.head.clone(),
-        unit,
-        taken.unit_source.to_owned(),
-    ]
 }
 
 /// The layout, for the terminal.

@@ -300,32 +300,28 @@ fn predictions(study: &JointStudy, joint: &JointResults) -> [Block; 3] {
 }
 
 fn ranking(study: &JointStudy, joint: &JointResults) -> [Block; 3] {
-    let rows = ranked(study, joint)
-        .into_iter()
-        .map(|law| match law.figures {
-            Some([error, residual, criterion]) => vec![
-                law.name,
-                law.parameters.to_string(),
-                error_words(error),
-                decimals(residual, 5),
-                format!("{criterion:.1}"),
-            ],
-            None => {
-                let mut row = vec![law.name, law.fault];
-                row.resize(5, String::new());
-                row
-            }
+    let figure = |law: &RankedLaw, index: usize, write: &dyn Fn(f64) -> String| {
+        let figures = law.figures;
+        figures.map_or(String::new(), |figures| write(figures[index]))
+    };
+    let table = Table::of(ranked(study, joint))
+        .column("card", |law| law.name.clone())
+        .column("parameters", |law| match law.figures {
+            Some(_) => law.parameters.to_string(),
+            None => law.fault.clone(),
+        })
+        .column("left-out forces, root mean square error [%]", |law| {
+            figure(law, 0, &error_words)
+        })
+        .column("left-out markers, root mean square residual [mm]", |law| {
+            figure(law, 1, &|residual| decimals(residual, 5))
+        })
+        .column("ΔAICc", |law| {
+            figure(law, 2, &|above| format!("{above:.1}"))
         });
-    let head = [
-        "card",
-        "parameters",
-        "left-out forces, root mean square error [%]",
-        "left-out markers, root mean square residual [mm]",
-        "ΔAICc",
-    ];
     [
         Block::heading("Laws"),
-        Block::table(&head, rows),
+        table.block(),
         Block::paragraph(
             "The law that best predicts the left-out forces comes first. AICc uses the number of independent values and is given relative to \
              the smallest.",
