@@ -23,13 +23,14 @@ pub fn is_of_palette(fault: &TiffError) -> bool {
     )
 }
 
+/// A decoder of bytes in memory.
+type InMemory = Decoder<Cursor<Vec<u8>>>;
+
 /// A decoder of the same page that takes these numbers for grey values, and the grey value of the colour of each number.
 ///
 /// # Errors
 /// What is wrong with the file.
-pub fn numbers<R: Read + Seek>(
-    decoder: &mut Decoder<R>,
-) -> Result<(Decoder<Cursor<Vec<u8>>>, Vec<f32>), String> {
+pub fn numbers<R: Read + Seek>(decoder: &mut Decoder<R>) -> Result<(InMemory, Vec<f32>), String> {
     let words = |fault: TiffError| fault.to_string();
     let colours = decoder.get_tag_u16_vec(Tag::ColorMap).map_err(words)?;
     let third = colours.len() / 3;
