@@ -176,15 +176,18 @@ impl CellShape {
 
     /// The nodes of each edge within the cell: its ends, then its middle.
     pub fn edges(self) -> Vec<Vec<usize>> {
+        let numbers = 0..self.corners();
+        numbers.map(|number| self.edge(number)).collect()
+    }
+
+    /// The same of one edge.
+    pub(super) fn edge(self, number: usize) -> Vec<usize> {
         let corners = self.corners();
-        let edge = |i: usize| {
-            let mut nodes = vec![i, (i + 1) % corners];
-            if self.degree() == 2 {
-                nodes.push(corners + i);
-            }
-            nodes
-        };
-        (0..corners).map(edge).collect()
+        let mut nodes = vec![number, (number + 1) % corners];
+        if self.degree() == 2 {
+            nodes.push(corners + number);
+        }
+        nodes
     }
 
     /// Points and weights that integrate the stiffness of an undistorted cell exactly.

@@ -223,10 +223,10 @@ impl Mesh {
     }
 
     /// Both ends of an edge of a cell, then the middle where there is one, with the cell to the left.
-    fn edge_nodes(&self, edge: CellEdge) -> Vec<usize> {
+    pub(super) fn edge_nodes(&self, edge: CellEdge) -> Vec<usize> {
         let nodes = self.cell(edge.cell);
-        let local = &self.shape(edge.cell).edges()[edge.number];
-        local.iter().map(|node| nodes[*node]).collect()
+        let local = self.shape(edge.cell).edge(edge.number).into_iter();
+        local.map(|node| nodes[node]).collect()
     }
 
     /// Centre of a cell in mm: the mean of its corners.

@@ -54,7 +54,7 @@ pub fn hinges(sides: &Sides, allowed: Exemptions) -> Option<Diagnostic> {
         return None;
     }
     let mut once = BTreeSet::new();
-    let begins = sides.boundary().into_iter().map(|side| side.ends()[0]);
+    let begins = sides.boundary().into_iter().map(|side| side.ends[0]);
     let twice: BTreeSet<usize> = begins.filter(|node| !once.insert(*node)).collect();
     Finding::of(twice.into_iter().map(|node| sides.mesh.nodes[node])).error(
         [

@@ -8,22 +8,12 @@ use crate::mesh::cells::Mesh;
 use crate::mesh::refine::key;
 
 /// A side of a cell.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy)]
 pub struct Side {
-    key: [usize; 2],
-    pub cell: usize,
-    /// Whether it leads from the smaller end to the larger one, as the cell to its left goes around.
-    forward: bool,
+    /// Begin and end, with the cell to the left.
+    pub ends: [usize; 2],
     /// The node in its middle.
     pub middle: Option<usize>,
-}
-
-impl Side {
-    /// Begin and end, with the cell to the left.
-    pub fn ends(self) -> [usize; 2] {
-        let [a, b] = self.key;
-        if self.forward { [a, b] } else { [b, a] }
-    }
 }
 
 /// All sides of a mesh's cells, except some cells.
@@ -37,26 +27,21 @@ pub struct Sides<'a> {
 
 impl<'a> Sides<'a> {
     pub fn new(mesh: &'a Mesh, again: &'a HashSet<usize>) -> Self {
-        let mut all = Vec::with_capacity(4 * mesh.cell_count());
-        for cell in (0..mesh.cell_count()).filter(|cell| !again.contains(cell)) {
-            let nodes = mesh.cell(cell);
-            for edge in mesh.shape(cell).edges() {
-                let [a, b] = [nodes[edge[0]], nodes[edge[1]]];
-                all.push(Side {
-                    key: key(a, b),
-                    cell,
-                    forward: a < b,
-                    middle: edge.get(2).map(|middle| nodes[*middle]),
-                });
-            }
-        }
-        all.sort_unstable();
+        let edges = mesh.edges().into_iter();
+        let edges = edges.filter(|edge| !again.contains(&edge.cell));
+        let side = |nodes: Vec<usize>| Side {
+            ends: [nodes[0], nodes[1]],
+            middle: nodes.get(2).copied(),
+        };
+        let all = edges.map(|edge| side(mesh.edge_nodes(edge))).collect();
         Self { mesh, all, again }
     }
 
     /// The sides with the same ends.
     fn meeting(&self) -> impl Iterator<Item = &[Side]> {
-        self.all.chunk_by(|one, other| one.key == other.key)
+        let ends = |side: &Side| key(side.ends[0], side.ends[1]);
+        self.all
+            .chunk_by(move |one, other| ends(one) == ends(other))
     }
 
     /// The cells that are counted.
@@ -72,14 +57,14 @@ impl<'a> Sides<'a> {
 
     /// Half way between the ends of a side.
     pub fn position(&self, side: Side) -> [f64; 2] {
-        let [a, b] = side.key.map(|node| self.mesh.nodes[node]);
+        let [a, b] = side.ends.map(|node| self.mesh.nodes[node]);
         [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])]
     }
 
     /// Sides where cells overlap or do not match.
     pub fn faults(&self) -> Vec<Diagnostic> {
         let overlapping = self.meeting().filter(|sides| {
-            sides.len() > 2 || (sides.len() == 2 && sides[0].forward == sides[1].forward)
+            sides.len() > 2 || (sides.len() == 2 && sides[0].ends == sides[1].ends)
         });
         let overlapping = Finding::of(overlapping.map(|sides| self.position(sides[0]))).error(
             [

@@ -77,7 +77,7 @@ impl<'a> Boundary<'a> {
         };
         for side in &boundary.all {
             let length = boundary.length(*side);
-            for node in side.ends().into_iter().chain(side.middle) {
+            for node in side.ends.into_iter().chain(side.middle) {
                 let known = boundary.shortest.entry(node).or_insert(length);
                 *known = known.min(length);
             }
@@ -96,13 +96,13 @@ impl<'a> Boundary<'a> {
     }
 
     fn length(&self, side: Side) -> f64 {
-        let [a, b] = side.ends().map(|node| self.node(node));
+        let [a, b] = side.ends.map(|node| self.node(node));
         (b[0] - a[0]).hypot(b[1] - a[1])
     }
 
     /// The box around a side, including a margin for nearby nodes.
     fn around(&self, side: Side) -> [[f64; 2]; 2] {
-        let [a, b] = side.ends().map(|node| self.node(node));
+        let [a, b] = side.ends.map(|node| self.node(node));
         let bow = self.bow(side);
         let margin = NEAR * self.length(side) + bow[0].abs().max(bow[1].abs());
         [
@@ -113,7 +113,7 @@ impl<'a> Boundary<'a> {
 
     /// From the middle of a side's chord to its middle.
     fn bow(&self, side: Side) -> [f64; 2] {
-        let [a, b] = side.ends().map(|node| self.node(node));
+        let [a, b] = side.ends.map(|node| self.node(node));
         side.middle.map_or([0.0; 2], |middle| {
             let m = self.node(middle);
             [0, 1].map(|axis| m[axis] - 0.5 * (a[axis] + b[axis]))
@@ -129,7 +129,7 @@ impl<'a> Boundary<'a> {
             .iter()
             .map(|side| self.all[*side]);
         let touch = |side: Side| {
-            let nodes: Vec<usize> = side.ends().into_iter().chain(side.middle).collect();
+            let nodes: Vec<usize> = side.ends.into_iter().chain(side.middle).collect();
             if nodes.contains(&node) {
                 return None;
             }
@@ -147,7 +147,7 @@ impl<'a> Boundary<'a> {
 
     /// The point of a side that is nearest to a place beside it.
     fn foot(&self, side: Side, position: [f64; 2]) -> Option<[f64; 2]> {
-        let [a, b] = side.ends().map(|node| self.node(node));
+        let [a, b] = side.ends.map(|node| self.node(node));
         let bow = self.bow(side);
         let chord = [b[0] - a[0], b[1] - a[1]];
         let square = chord[0].powi(2) + chord[1].powi(2);
@@ -165,7 +165,7 @@ impl<'a> Boundary<'a> {
 
     /// Nodes that are a corner of one cell and in the middle of another one's side, with that side.
     fn both_corner_and_middle(&self) -> Vec<(usize, Side)> {
-        let corners: BTreeSet<usize> = self.all.iter().flat_map(|side| side.ends()).collect();
+        let corners: BTreeSet<usize> = self.all.iter().flat_map(|side| side.ends).collect();
         let middles = self
             .all
             .iter()
@@ -177,9 +177,9 @@ impl<'a> Boundary<'a> {
 
     /// Whether a side of the boundary, or half of one, leads from a node to an end of a side, or is its own middle.
     fn is_neighbour(&self, node: usize, side: Side) -> bool {
-        let ends = side.ends();
+        let ends = side.ends;
         let leads = |other: &Side| {
-            let other_ends = other.ends();
+            let other_ends = other.ends;
             other_ends.contains(&node) && other_ends.iter().any(|end| ends.contains(end))
         };
         side.middle == Some(node) || self.all.iter().any(leads)
@@ -194,7 +194,7 @@ impl<'a> Boundary<'a> {
         let mut known: BTreeMap<[usize; 2], usize> = BTreeMap::new();
         let mut twice = Vec::new();
         for side in &self.all {
-            let [a, b] = side.ends().map(|node| same.first(node));
+            let [a, b] = side.ends.map(|node| same.first(node));
             let count = known.entry([a.min(b), a.max(b)]).or_insert(0);
             *count += 1;
             if *count == 2 {
