@@ -22,7 +22,7 @@ use super::cell_shape::CellShape;
 use super::cells::Mesh;
 use super::geometry::{check_size, distance, polygon_area};
 use super::triangulate::fill;
-use crate::statistics::{extremes, median};
+use crate::statistics::{extremes, median, nearest};
 use crate::units::SIZES;
 
 mod alpha_shape;
@@ -342,25 +342,12 @@ fn roughness(lines: &[Vec<[f64; 2]>], outer: &[[f64; 2]]) -> f64 {
     (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt()
 }
 
-/// The median distance of points to their nearest neighbour over √(area/points).
+/// The median distance of points to their nearest neighbour over √(area/points); distances beyond twice that count as twice.
 fn regularity(points: &[[f64; 2]], area: f64) -> f64 {
     let side = (area / points.len() as f64).sqrt();
-    let square = |[x, y]: [f64; 2]| [(x / side).floor() as i64, (y / side).floor() as i64];
-    let mut squares: HashMap<[i64; 2], Vec<[f64; 2]>> = HashMap::new();
-    for point in points {
-        squares.entry(square(*point)).or_default().push(*point);
-    }
-    // Beyond two squares no point is nearer than 2 sides, and that is all that matters.
-    let nearest = |point: &[f64; 2]| {
-        let [i, j] = square(*point);
-        let around = (-2..=2).flat_map(|di| (-2..=2).map(move |dj| [i + di, j + dj]));
-        let near = around.filter_map(|key| squares.get(&key)).flatten();
-        let others = near.filter(|other| *other != point);
-        others.fold(2.0 * side, |least: f64, other| {
-            least.min(distance(*point, *other))
-        })
-    };
-    median(points.iter().map(nearest)) / side
+    let near = nearest(points, 1).into_iter().zip(points);
+    let near = near.map(|(others, point)| distance(*point, points[others[0]]).min(2.0 * side));
+    median(near) / side
 }
 
 /// Three quadrilaterals for each triangle, about its centre.

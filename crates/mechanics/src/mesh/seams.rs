@@ -49,12 +49,16 @@ impl Mesh {
             return None;
         }
         let mut nodes = self.boundary().iter().flatten();
-        nodes.any(|node| self.lies_on_others(*node, -ON)).then(|| {
-            let edges = self.edges();
-            let pairs = edges.windows(2).filter(|pair| pair[0].ends == pair[1].ends);
-            let pairs = pairs.map(|pair| [0, 1].map(|i| (pair[i].cell, pair[i].number)));
-            Neighbours::new(self.cell_count(), pairs)
-        })
+        let is_seamed = nodes.any(|node| self.lies_on_others(*node, -ON));
+        is_seamed.then(|| self.neighbours())
+    }
+
+    /// The neighbours of all cells.
+    pub(super) fn neighbours(&self) -> Neighbours {
+        let edges = self.edges();
+        let pairs = edges.windows(2).filter(|pair| pair[0].ends == pair[1].ends);
+        let pairs = pairs.map(|pair| [0, 1].map(|i| (pair[i].cell, pair[i].number)));
+        Neighbours::new(self.cell_count(), pairs)
     }
 
     /// Whether a node lies in a cell that is not its own, deeper than `depth` in natural coordinates.

@@ -3,7 +3,10 @@
 use std::collections::{BTreeMap, HashMap};
 
 use super::fault::OutlineFault;
+use crate::mesh::cell_shape::CellShape;
+use crate::mesh::cells::Mesh;
 use crate::mesh::geometry::{distance, polygon_area};
+use crate::mesh::neighbours::Neighbours;
 use crate::mesh::parts::Parts;
 use crate::mesh::triangulate::delaunay;
 use crate::statistics::median;
@@ -27,7 +30,10 @@ pub fn lines(points: &[[f64; 2]], wider: f64) -> Result<(Vec<Line>, f64), Outlin
     let spacing = median_edge(points, &triangles);
     let small = |triangle: &[usize; 3]| radius(points, triangle) < wider * RADIUS * spacing;
     let mut inside: Vec<bool> = triangles.iter().map(small).collect();
-    let adjacent = neighbours(&triangles);
+    let cells = triangles
+        .iter()
+        .map(|corners| (CellShape::Triangle3, corners.to_vec()));
+    let adjacent = Mesh::new(points.to_vec(), cells).neighbours();
     mend_touching(&triangles, &adjacent, &mut inside);
     largest_part(points, &triangles, &adjacent, &mut inside)?;
     let boundary = boundary_edges(&triangles, &adjacent, &inside);
@@ -53,32 +59,6 @@ fn radius(points: &[[f64; 2]], triangle: &[usize; 3]) -> f64 {
     sides.iter().product::<f64>() / (2.0 * twice.abs())
 }
 
-/// The triangles beyond the edges ab, bc and ca of each triangle.
-type Neighbours = Vec<[Option<usize>; 3]>;
-
-fn neighbours(triangles: &[[usize; 3]]) -> Neighbours {
-    let sides = triangles
-        .iter()
-        .enumerate()
-        .flat_map(|(triangle, corners)| {
-            [0, 1, 2].map(|side| {
-                let [from, to] = [corners[side], corners[(side + 1) % 3]];
-                ([from.min(to), from.max(to)], triangle, side)
-            })
-        });
-    let mut sides: Vec<_> = sides.collect();
-    sides.sort_unstable();
-    let mut adjacent = vec![[None; 3]; triangles.len()];
-    for pair in sides.windows(2) {
-        let [(edge, one, of_one), (same, other, of_other)] = [pair[0], pair[1]];
-        if edge == same {
-            adjacent[one][of_one] = Some(other);
-            adjacent[other][of_other] = Some(one);
-        }
-    }
-    adjacent
-}
-
 /// The edges of triangles inside without one at their other side, by their first point, inside to the left.
 fn boundary_edges(
     triangles: &[[usize; 3]],
@@ -87,8 +67,11 @@ fn boundary_edges(
 ) -> Vec<[usize; 2]> {
     let kept = (0..triangles.len()).filter(|triangle| inside[*triangle]);
     let edges = kept.flat_map(|triangle| [0, 1, 2].map(|side| (triangle, side)));
-    let open = edges
-        .filter(|(triangle, side)| !adjacent[*triangle][*side].is_some_and(|other| inside[other]));
+    let open = edges.filter(|(triangle, side)| {
+        !adjacent
+            .across(*triangle, *side)
+            .is_some_and(|other| inside[other])
+    });
     open.map(|(triangle, side)| [side, (side + 1) % 3].map(|corner| triangles[triangle][corner]))
         .collect()
 }
@@ -124,7 +107,7 @@ fn largest_part(
 ) -> Result<(), OutlineFault> {
     let mut parts = Parts::new(triangles.len());
     for triangle in (0..triangles.len()).filter(|triangle| inside[*triangle]) {
-        for next in adjacent[triangle].into_iter().flatten() {
+        for next in (0..3).filter_map(|side| adjacent.across(triangle, side)) {
             if inside[next] {
                 parts.join(triangle, next);
             }
