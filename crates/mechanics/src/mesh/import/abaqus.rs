@@ -21,11 +21,8 @@ enum Block {
         set: Option<String>,
         is_plane_strain: bool,
     },
-    NodeSet {
-        name: String,
-        is_range: bool,
-    },
-    ElementSet {
+    Set {
+        of_nodes: bool,
         name: String,
         is_range: bool,
     },
@@ -62,26 +59,15 @@ pub fn read(text: &str) -> Result<Raw, Unreadable> {
 
 /// The block that a keyword begins.
 fn keyword(line: &str) -> Result<Block, String> {
-    let mut parts = line
-        .trim()
-        .trim_start_matches('*')
-        .split(',')
-        .map(str::trim);
-    let name = parts.next().unwrap_or_default().to_uppercase();
-    let options: Vec<(String, String)> = parts
-        .map(|part| part.split_once('=').unwrap_or((part, "")))
-        .map(|(key, value)| {
-            (
-                key.trim().to_uppercase(),
-                value.trim().trim_matches('"').to_owned(),
-            )
-        })
-        .collect();
+    let line = line.trim().trim_start_matches('*');
+    let (name, options) = line.split_once(',').unwrap_or((line, ""));
+    let name = name.trim().to_uppercase();
     let option = |key: &str| {
-        options
-            .iter()
-            .find(|(known, _)| known == key)
-            .map(|(_, value)| value.clone())
+        options.split(',').find_map(|part| {
+            let (known, value) = part.split_once('=').unwrap_or((part, ""));
+            let value = value.trim().trim_matches('"').to_owned();
+            known.trim().eq_ignore_ascii_case(key).then_some(value)
+        })
     };
     let is_range = option("GENERATE").is_some();
     let named = |key: &str| {
@@ -98,12 +84,9 @@ fn keyword(line: &str) -> Result<Block, String> {
             set: option("ELSET"),
             is_plane_strain: named("TYPE")?.to_uppercase().starts_with("CPE"),
         },
-        "NSET" => Block::NodeSet {
-            name: named("NSET")?,
-            is_range,
-        },
-        "ELSET" => Block::ElementSet {
-            name: named("ELSET")?,
+        "NSET" | "ELSET" => Block::Set {
+            of_nodes: name == "NSET",
+            name: named(&name)?,
             is_range,
         },
         "INCLUDE" => {
@@ -167,14 +150,17 @@ impl Input {
                 self.raw.is_plane_strain |= is_plane_strain;
                 self.element(&fields, *shape, set.as_deref())
             }
-            Block::NodeSet { name, is_range } => {
-                let members = members(&fields, *is_range)?;
-                extend(&mut self.node_sets, name, members);
-                Ok(())
-            }
-            Block::ElementSet { name, is_range } => {
-                let members = members(&fields, *is_range)?;
-                extend(&mut self.element_sets, name, members);
+            Block::Set {
+                of_nodes,
+                name,
+                is_range,
+            } => {
+                let sets = if *of_nodes {
+                    &mut self.node_sets
+                } else {
+                    &mut self.element_sets
+                };
+                extend(sets, name, members(&fields, *is_range)?);
                 Ok(())
             }
             Block::Other => Ok(()),
@@ -208,10 +194,7 @@ impl Input {
         shape: CellShape,
         set: Option<&str>,
     ) -> Result<(), String> {
-        let numbers = fields
-            .iter()
-            .map(|field| integer(field))
-            .collect::<Result<Vec<u64>, _>>()?;
+        let numbers = integers(fields)?;
         let [number, nodes @ ..] = &numbers[..] else {
             return Err("an element without its number".to_owned());
         };
@@ -270,11 +253,7 @@ fn members(fields: &[&str], is_range: bool) -> Result<Vec<Member>, String> {
         };
         return Ok(fields.iter().map(member).collect());
     }
-    let numbers = fields
-        .iter()
-        .map(|field| integer(field))
-        .collect::<Result<Vec<u64>, _>>()?;
-    let (first, last, step) = match numbers[..] {
+    let (first, last, step) = match integers(fields)?[..] {
         [first, last] => (first, last, 1),
         [first, last, step] => (first, last, step),
         _ => return Err("a range needs its first and last number, and its step".to_owned()),
@@ -309,6 +288,10 @@ fn resolved(sets: &[(String, Vec<Member>)]) -> Result<Vec<(String, Vec<u64>)>, U
         all.push((name.clone(), numbers));
     }
     Ok(all)
+}
+
+fn integers(fields: &[&str]) -> Result<Vec<u64>, String> {
+    fields.iter().map(|field| integer(field)).collect()
 }
 
 fn integer(field: &str) -> Result<u64, String> {
