@@ -37,32 +37,14 @@ pub fn arrays(bytes: &[u8]) -> Result<Vec<Array>, Unconvertible> {
     };
     let mut all = Vec::new();
     while !elements.rest.is_empty() {
-        let (kind, data) = elements.next().ok_or_else(damaged)?;
-        let unpacked = if kind == COMPRESSED {
-            Some(unpack(data, big_endian)?)
-        } else {
-            None
-        };
-        let mut inner = Elements {
-            rest: unpacked.as_deref().unwrap_or_default(),
-            big_endian,
-        };
-        let (kind, data) = if kind == COMPRESSED {
-            inner.next().ok_or_else(damaged)?
-        } else {
-            (kind, data)
-        };
+        let (mut kind, mut data) = elements.next()?;
+        let unpacked;
+        if kind == COMPRESSED {
+            unpacked = unpack(data, big_endian)?;
+            (kind, data) = elements.within(&unpacked).next()?;
+        }
         if kind == MATRIX {
-            matrix(
-                Elements {
-                    rest: data,
-                    big_endian,
-                },
-                None,
-                DEEPEST,
-                &mut all,
-            )
-            .ok_or_else(damaged)??;
+            matrix(elements.within(data), None, DEEPEST, &mut all)?;
         }
     }
     Ok(all)
@@ -104,8 +86,18 @@ struct Elements<'a> {
 }
 
 impl<'a> Elements<'a> {
-    /// The type and the data of the next element; small ones share four bytes with their tag.
-    fn next(&mut self) -> Option<(u32, &'a [u8])> {
+    /// The elements within another one.
+    fn within<'b>(&self, rest: &'b [u8]) -> Elements<'b> {
+        Elements { rest, ..*self }
+    }
+
+    /// The type and the data of the next element.
+    fn next(&mut self) -> Result<(u32, &'a [u8]), Unconvertible> {
+        self.split().ok_or_else(damaged)
+    }
+
+    /// Splits the next element off; small ones share four bytes with their tag.
+    fn split(&mut self) -> Option<(u32, &'a [u8])> {
         let first = word(self.rest.get(..4)?, self.big_endian);
         if first >> 16 != 0 {
             let data = self.rest.get(4..4 + (first >> 16) as usize)?;
@@ -123,22 +115,18 @@ impl<'a> Elements<'a> {
         Some((first, data))
     }
 
-    fn words(&mut self) -> Option<Vec<u32>> {
-        let (_, data) = self.next()?;
-        Some(
-            data.chunks_exact(4)
-                .map(|bytes| word(bytes, self.big_endian))
-                .collect(),
-        )
+    fn words(&mut self) -> Result<Vec<u32>, Unconvertible> {
+        let words = self.next()?.1.chunks_exact(4);
+        Ok(words.map(|bytes| word(bytes, self.big_endian)).collect())
     }
 
-    fn text(&mut self) -> Option<String> {
-        let (_, data) = self.next()?;
-        Some(text(data))
+    /// The first of some words.
+    fn first_word(&mut self) -> Result<u32, Unconvertible> {
+        self.words()?.first().copied().ok_or_else(damaged)
     }
 
     /// Numbers of any type.
-    fn numbers(&mut self) -> Option<Vec<f64>> {
+    fn numbers(&mut self) -> Result<Vec<f64>, Unconvertible> {
         let (kind, data) = self.next()?;
         let (size, kind) = match kind {
             1 => (1, 'i'),
@@ -151,13 +139,11 @@ impl<'a> Elements<'a> {
             9 => (8, 'f'),
             12 => (8, 'i'),
             13 => (8, 'u'),
-            _ => return None,
+            _ => return Err(damaged()),
         };
-        Some(
-            data.chunks_exact(size)
-                .map(|bytes| number(kind, bytes, self.big_endian))
-                .collect(),
-        )
+        let numbers = data.chunks_exact(size);
+        let numbers = numbers.map(|bytes| number(kind, bytes, self.big_endian));
+        Ok(numbers.collect())
     }
 }
 
@@ -167,46 +153,37 @@ fn text(data: &[u8]) -> String {
     String::from_utf8_lossy(data).into_owned()
 }
 
-/// Adds the arrays of a matrix or a structure; what is neither is passed over. `None` where it is damaged.
+/// Adds the arrays of a matrix or a structure; what is neither is passed over.
 fn matrix(
     mut elements: Elements,
     name: Option<String>,
     depth: usize,
     all: &mut Vec<Array>,
-) -> Option<Result<(), Unconvertible>> {
+) -> Result<(), Unconvertible> {
     const COMPLEX: u32 = 0x800;
     if elements.rest.is_empty() {
-        return Some(Ok(()));
+        return Ok(());
     }
-    let flags = *elements.words()?.first()?;
+    let flags = elements.first_word()?;
     let class = flags as u8;
     if class != STRUCTURE && !NUMBERS.contains(&class) {
-        return Some(Ok(()));
+        return Ok(());
     }
-    let shape: Vec<usize> = elements
-        .words()?
-        .into_iter()
-        .map(|size| size as usize)
-        .collect();
-    let written = elements.text()?;
-    let name = name.unwrap_or(written);
-    let count = shape
-        .iter()
-        .try_fold(1_usize, |all, size| all.checked_mul(*size))?;
-    if class == STRUCTURE {
-        let looked_into = depth > 0 && count == 1;
-        return if looked_into {
-            structure(elements, &name, depth, all)
-        } else {
-            Some(Ok(()))
-        };
-    }
-    if let Err(excess) = afford(0.0, count as f64) {
-        return Some(Err(excess));
+    let shape = elements.words()?.into_iter().map(|size| size as usize);
+    let shape: Vec<usize> = shape.collect();
+    let (_, written) = elements.next()?;
+    let name = name.unwrap_or_else(|| text(written));
+    let mut sizes = shape.iter();
+    let count = sizes.try_fold(1_usize, |all, size| all.checked_mul(*size));
+    let count = count.ok_or_else(damaged)?;
+    match class {
+        STRUCTURE if depth > 0 && count == 1 => return structure(elements, &name, depth, all),
+        STRUCTURE => return Ok(()),
+        _ => afford(0.0, count as f64)?,
     }
     let numbers = elements.numbers()?;
     if numbers.len() != count {
-        return None;
+        return Err(damaged());
     }
     if flags & COMPLEX == 0 {
         let numbers = by_rows(&numbers, &shape);
@@ -217,7 +194,7 @@ fn matrix(
             numbers,
         });
     }
-    Some(Ok(()))
+    Ok(())
 }
 
 fn structure(
@@ -225,21 +202,15 @@ fn structure(
     name: &str,
     depth: usize,
     all: &mut Vec<Array>,
-) -> Option<Result<(), Unconvertible>> {
-    let length = *elements.words()?.first()? as usize;
+) -> Result<(), Unconvertible> {
+    let length = elements.first_word()? as usize;
     let (_, names) = elements.next()?;
     for field in names.chunks_exact(length.max(1)) {
         let (kind, data) = elements.next()?;
         if kind == MATRIX {
-            let inner = Elements {
-                rest: data,
-                ..elements
-            };
             let name = format!("{name}.{}", text(field));
-            if let Err(fault) = matrix(inner, Some(name), depth - 1, all)? {
-                return Some(Err(fault));
-            }
+            matrix(elements.within(data), Some(name), depth - 1, all)?;
         }
     }
-    Some(Ok(()))
+    Ok(())
 }
