@@ -135,9 +135,7 @@ fn section<'a>(text: &'a str, name: &'static str) -> Result<Words<'a>, Unreadabl
 }
 
 fn names(text: &str) -> Result<Names, Unreadable> {
-    let Some(body) = body(text, "PhysicalNames") else {
-        return Ok(Names::new());
-    };
+    let body = body(text, "PhysicalNames").unwrap_or_default();
     let mut names = Names::new();
     for line in body.lines().skip(1).filter(|line| !line.trim().is_empty()) {
         let mut words = Words {
@@ -194,27 +192,18 @@ fn kind(number: i64) -> Result<(Kind, usize), Unreadable> {
 impl Raw {
     /// Adds an element with the groups that it belongs to.
     fn add(&mut self, kind: &Kind, nodes: Vec<u64>, groups: &[String]) {
-        match kind {
-            Kind::Cell(shape) => {
-                for group in groups {
-                    let cells = self.areas.entry(group.clone()).or_default();
-                    cells.push(self.cells.len());
+        for group in groups.iter().cloned() {
+            match kind {
+                Kind::Cell(_) => self.areas.entry(group).or_default().push(self.cells.len()),
+                Kind::Line => {
+                    let lines = self.lines.entry(group).or_default();
+                    lines.push([nodes[0], nodes[1]]);
                 }
-                self.cells.push((*shape, nodes));
+                Kind::Point => self.points.entry(group).or_default().push(nodes[0]),
             }
-            Kind::Line => {
-                for group in groups {
-                    self.lines
-                        .entry(group.clone())
-                        .or_default()
-                        .push([nodes[0], nodes[1]]);
-                }
-            }
-            Kind::Point => {
-                for group in groups {
-                    self.points.entry(group.clone()).or_default().push(nodes[0]);
-                }
-            }
+        }
+        if let Kind::Cell(shape) = kind {
+            self.cells.push((*shape, nodes));
         }
     }
 }
