@@ -3,6 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::OnceLock;
 
+use rayon::prelude::*;
+
 use super::buckets::Buckets;
 use super::cell_shape::CellShape;
 use super::geometry::bounding_box;
@@ -198,28 +200,8 @@ impl Mesh {
                 edges.push(CellEdge { ends, cell, number });
             }
         }
-        self.sorted(&edges)
-    }
-
-    /// Some edges by their ends: first by the lower one, of which each node has a few.
-    fn sorted(&self, edges: &[CellEdge]) -> Vec<CellEdge> {
-        let mut next = vec![0; self.nodes.len() + 1];
-        for edge in edges {
-            next[edge.ends[0] + 1] += 1;
-        }
-        for node in 1..next.len() {
-            next[node] += next[node - 1];
-        }
-        let mut sorted = edges.to_vec();
-        for edge in edges {
-            let position = &mut next[edge.ends[0]];
-            sorted[*position] = *edge;
-            *position += 1;
-        }
-        for begins_there in sorted.chunk_by_mut(|one, other| one.ends[0] == other.ends[0]) {
-            begins_there.sort_unstable();
-        }
-        sorted
+        edges.par_sort_unstable();
+        edges
     }
 
     /// Both ends of an edge of a cell, then the middle where there is one, with the cell to the left.
