@@ -29,7 +29,7 @@ use crate::mesh::{CellShape, Grid, Mesh};
 use crate::problem::ClampedPlate;
 use crate::problem::sheet_energy::SheetEnergy;
 
-use super::sampling::{self, Rule};
+use super::sampling::{self, CUBIC, LINEAR, QUADRATIC};
 
 /// Where in a cell the differences are taken.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -112,9 +112,9 @@ impl DifferenceScheme {
         coordinates: &[Vec<f64>; 2],
     ) -> SheetEnergy {
         match self {
-            Self::Gauss => sampling::energy(problem, coordinates, Rule::linear()),
-            Self::Biquadratic => sampling::energy(problem, coordinates, Rule::quadratic()),
-            Self::Bicubic => sampling::energy(problem, coordinates, Rule::cubic()),
+            Self::Gauss => sampling::energy(problem, coordinates, &LINEAR),
+            Self::Biquadratic => sampling::energy(problem, coordinates, &QUADRATIC),
+            Self::Bicubic => sampling::energy(problem, coordinates, &CUBIC),
         }
     }
 

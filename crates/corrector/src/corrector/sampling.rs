@@ -19,29 +19,12 @@ pub struct Rule<const NODES: usize> {
     pub derivatives: [[f64; NODES]; NODES],
 }
 
-impl Rule<2> {
-    /// Linear functions at two Gauss points.
-    pub fn linear() -> &'static Self {
-        static RULE: LazyLock<Rule<2>> = LazyLock::new(|| Rule::gauss(GAUSS_2));
-        &RULE
-    }
-}
-
-impl Rule<3> {
-    /// Parabolas at three Gauss points.
-    pub fn quadratic() -> &'static Self {
-        static RULE: LazyLock<Rule<3>> = LazyLock::new(|| Rule::gauss(GAUSS_3));
-        &RULE
-    }
-}
-
-impl Rule<4> {
-    /// Cubics at four Gauss points.
-    pub fn cubic() -> &'static Self {
-        static RULE: LazyLock<Rule<4>> = LazyLock::new(|| Rule::gauss(GAUSS_4));
-        &RULE
-    }
-}
+/// Linear functions at two Gauss points.
+pub static LINEAR: LazyLock<Rule<2>> = LazyLock::new(|| Rule::gauss(GAUSS_2));
+/// Parabolas at three Gauss points.
+pub static QUADRATIC: LazyLock<Rule<3>> = LazyLock::new(|| Rule::gauss(GAUSS_3));
+/// Cubics at four Gauss points.
+pub static CUBIC: LazyLock<Rule<4>> = LazyLock::new(|| Rule::gauss(GAUSS_4));
 
 impl<const NODES: usize> Rule<NODES> {
     /// Lagrange's polynomials of the nodes, with the points and weights of a rule on −1…1.
@@ -166,8 +149,8 @@ mod tests {
 
     #[test]
     fn rules_are_exact_for_polynomials() {
-        check(Rule::linear(), GAUSS_2);
-        check(Rule::quadratic(), GAUSS_3);
-        check(Rule::cubic(), GAUSS_4);
+        check(&LINEAR, GAUSS_2);
+        check(&QUADRATIC, GAUSS_3);
+        check(&CUBIC, GAUSS_4);
     }
 }

@@ -3,7 +3,7 @@
 use super::forces::forces;
 use super::grid::{Field, Grid};
 use crate::corrector::DifferenceScheme;
-use crate::corrector::sampling::Rule;
+use crate::corrector::sampling::{CUBIC, LINEAR, QUADRATIC};
 use crate::material::HyperelasticLaw;
 
 /// The sheet whose equation is solved.
@@ -22,11 +22,9 @@ impl Sheet<'_> {
     pub fn forces(self, grid: &Grid, u: &Field, target: &mut Field) -> Result<(), Inverted> {
         let Sheet { law, thickness, .. } = self;
         let admissible = match self.scheme {
-            DifferenceScheme::Gauss => forces(law, thickness, grid, Rule::linear(), u, target),
-            DifferenceScheme::Biquadratic => {
-                forces(law, thickness, grid, Rule::quadratic(), u, target)
-            }
-            DifferenceScheme::Bicubic => forces(law, thickness, grid, Rule::cubic(), u, target),
+            DifferenceScheme::Gauss => forces(law, thickness, grid, &LINEAR, u, target),
+            DifferenceScheme::Biquadratic => forces(law, thickness, grid, &QUADRATIC, u, target),
+            DifferenceScheme::Bicubic => forces(law, thickness, grid, &CUBIC, u, target),
         };
         admissible.then_some(()).ok_or(Inverted)
     }
