@@ -272,7 +272,7 @@ impl<L: BodyLaw + 'static> HyperelasticLaw for BodySheet<L> {
     }
 
     fn stresses(&self, gradients: [&[f64]; 4], stresses: [&mut [f64]; 4]) -> bool {
-        self.stresses_at(gradients, stresses)
+        self.each::<points::Stress, 4>(gradients, stresses)
     }
 
     fn responses(
@@ -281,7 +281,7 @@ impl<L: BodyLaw + 'static> HyperelasticLaw for BodySheet<L> {
         responses: [&mut [f64]; COMPONENTS],
         _tangents: bool,
     ) -> bool {
-        self.responses_at(gradients, responses)
+        self.each::<points::Response, COMPONENTS>(gradients, responses)
     }
 
     fn tension(&self, _: [f64; 2], strain: f64) -> TensionResponse {
