@@ -221,9 +221,7 @@ impl<'a> Climb<'a> {
         self.check_operators()?;
         for _ in 0..LINEARISATIONS {
             let level = &mut self.levels[index];
-            level
-                .linearise(sheet, field, &mut self.multigrid)
-                .map_err(|Inverted| inverted())?;
+            level.linearise(sheet, field, &mut self.multigrid)?;
             let first = history.as_ref().map(CorrectionHistory::first);
             let ending = Ending {
                 most,
@@ -232,9 +230,7 @@ impl<'a> Climb<'a> {
                     enough(first.unwrap_or(first_here), remaining_error)
                 },
             };
-            let mut reached = level
-                .iterate(sheet, field, &mut self.multigrid, &ending)
-                .map_err(|Inverted| inverted())?;
+            let mut reached = level.iterate(sheet, field, &mut self.multigrid, &ending)?;
             if let Some(history) = history.take() {
                 reached = history.followed_by(reached);
             }
@@ -257,9 +253,7 @@ impl<'a> Climb<'a> {
         let sheet = self.sheet();
         let mut field = field.clone();
         for index in (0..=index).rev() {
-            self.levels[index]
-                .linearise(sheet, &field, &mut self.multigrid)
-                .map_err(|Inverted| inverted())?;
+            self.levels[index].linearise(sheet, &field, &mut self.multigrid)?;
             if index > 0 {
                 field = field.onto(&self.levels[index].grid, &self.levels[index - 1].grid);
             }
@@ -314,12 +308,6 @@ fn elements(cells: [usize; 2], scheme: DifferenceScheme) -> [usize; 2] {
         assert!(cells.is_multiple_of(scheme.side()), "cells taken together");
         cells / scheme.side()
     })
-}
-
-fn inverted() -> SolveFault {
-    SolveFault::Inverted {
-        element: "a cell on the way; use the direct method or more cells".into(),
-    }
 }
 
 /// Boundaries of about half as many elements, along the axes on which elements are short; `None` where there are few.

@@ -307,12 +307,6 @@ impl<'a> EquationOfMotion<'a> {
     fn inertia(&self, unknown: usize) -> f64 {
         self.motion.mass[unknown] / (self.step * self.step)
     }
-
-    fn inverted(&self, fault: Inadmissible) -> SolveFault {
-        SolveFault::Inverted {
-            element: (self.motion.describe)(fault.element),
-        }
-    }
 }
 
 /// The equations of consecutive instants, one above the other, over the free unknowns of all its instants.

@@ -101,9 +101,7 @@ pub(super) fn state_at(
     let potential = model.potential(stage.factor, stage.history);
     let mut residual = vec![0.0; displacement.len()];
     let energy = Assembly::residual(&*potential, &displacement, &mut residual);
-    convergence.energy = energy.map_err(|fault| SolveFault::Inverted {
-        element: model.describe(fault.element),
-    })?;
+    convergence.energy = energy.map_err(|fault| fault.named(|element| model.describe(element)))?;
     Ok(stage.reached(displacement, residual, convergence))
 }
 

@@ -71,9 +71,7 @@ impl<'a> Corrector<'a> {
     }
 
     pub(super) fn inverted(&self, fault: Inadmissible) -> SolveFault {
-        SolveFault::Inverted {
-            element: self.names.element(fault.element),
-        }
+        fault.named(|element| self.names.element(element))
     }
 
     pub(super) fn linearise(&self, field: &[f64]) -> Result<System, SolveFault> {

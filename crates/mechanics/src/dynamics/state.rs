@@ -54,19 +54,9 @@ impl Motion<'_> {
         let memory = self.viscosity.map_or(Ok(Memory::default()), |viscosity| {
             Memory::relaxed(self.energy.connectivity(), viscosity, past)
         });
-        let mut state = BodyState {
-            time: 0.0,
-            displacement: start.displacement,
-            velocity: start.velocity,
-            acceleration,
-            memory: memory.map_err(|fault| self.inverted(fault))?,
-            forces: Forces {
-                elastic: vec![0.0; size],
-                viscous: vec![0.0; size],
-                external: Vec::new(),
-            },
-            energy: EnergyBalance::default(),
-        };
+        let memory = memory.map_err(|fault| self.inverted(fault))?;
+        let motion = [start.displacement, start.velocity, acceleration];
+        let mut state = BodyState::unloaded(0.0, motion, memory);
         self.evaluate(&mut state, 0.0)?;
         // The elements take the step to the start at once; from now on they remember it.
         state.memory = self.memory_after(&state.memory, &state, 0.0)?;
@@ -77,9 +67,7 @@ impl Motion<'_> {
 
     /// The fault of an inverted element, with its name.
     pub(super) fn inverted(&self, fault: Inadmissible) -> SolveFault {
-        SolveFault::Inverted {
-            element: (self.describe)(fault.element),
-        }
+        fault.named(&self.describe)
     }
 
     /// The memory of the elements after a step of a length in s that ends at a state.
@@ -209,20 +197,9 @@ impl Motion<'_> {
         within: f64,
         [displacement, velocity]: [&[f64]; 2],
     ) -> Result<Vec<[f64; 2]>, SolveFault> {
-        let zeros = || vec![0.0; displacement.len()];
-        let mut at = BodyState {
-            time,
-            displacement: displacement.to_vec(),
-            velocity: velocity.to_vec(),
-            acceleration: zeros(),
-            memory: Memory::default(),
-            forces: Forces {
-                elastic: zeros(),
-                viscous: zeros(),
-                external: Vec::new(),
-            },
-            energy: EnergyBalance::default(),
-        };
+        let rest = vec![0.0; displacement.len()];
+        let motion = [displacement.to_vec(), velocity.to_vec(), rest];
+        let mut at = BodyState::unloaded(time, motion, Memory::default());
         at.impose(self, time, within);
         self.evaluate(&mut at, 0.0)?;
         Ok(self.forces_of_supports(&at))
@@ -299,6 +276,26 @@ impl Motion<'_> {
 }
 
 impl BodyState {
+    /// A body at a time in s with its displacements, velocities and accelerations; its forces are zero.
+    fn unloaded(time: f64, motion: [Vec<f64>; 3], memory: Memory) -> Self {
+        let [displacement, velocity, acceleration] = motion;
+        let zeros = || vec![0.0; displacement.len()];
+        let forces = Forces {
+            elastic: zeros(),
+            viscous: zeros(),
+            external: Vec::new(),
+        };
+        Self {
+            time,
+            displacement,
+            velocity,
+            acceleration,
+            memory,
+            forces,
+            energy: EnergyBalance::default(),
+        }
+    }
+
     /// Moves the held unknowns according to [`Motion::impose`].
     pub fn impose(&mut self, motion: &Motion, time: f64, within: f64) {
         let (u, v, a) = (

@@ -4,7 +4,7 @@ use super::assembly::Assembly;
 use super::convergence::{Convergence, NewtonSettings};
 use super::iterative::LinearSolver;
 use super::potential::{Inadmissible, Potential};
-use super::tangent::{Describe, Tangent, inverted};
+use super::tangent::{Describe, Tangent};
 use super::vector::{dot, gather, largest, scale};
 use crate::error::SolveFault;
 
@@ -162,7 +162,7 @@ impl Newton {
         };
         let energy = Assembly::residual(potential, u, residual);
         let near = Iterate {
-            energy: energy.map_err(|fault| inverted(fault, describe))?,
+            energy: energy.map_err(|fault| fault.named(describe))?,
             relative: f64::INFINITY,
             negligible: NEGLIGIBLE * stiffest,
             shifted: false,
@@ -181,7 +181,7 @@ impl Newton {
         loop {
             let assembly = &self.tangent.assembly;
             let linearised = assembly.linearise(to.potential, to.u, to.residual, &mut stiffness);
-            let energy = linearised.map_err(|fault| inverted(fault, describe))?;
+            let energy = linearised.map_err(|fault| fault.named(describe))?;
             let mut now = self.measure(to, energy, assembly.stiffest(&stiffness))?;
             self.tangent.take_skew(to.potential);
             if self.shifts {
@@ -212,7 +212,7 @@ impl Newton {
             to.log.shifted_steps += usize::from(now.shifted);
             let step = self.tangent.step(to.residual)?;
             let searched = self.search(to, now.energy, &step);
-            let (length, energy) = searched.map_err(|fault| inverted(fault, describe))?;
+            let (length, energy) = searched.map_err(|fault| fault.named(describe))?;
             to.log.cut_steps += usize::from(length < 1.0);
             if now.shifted || now.relative > SMALL {
                 continue;

@@ -1,6 +1,7 @@
 //! A potential energy that is a sum over elements.
 
 use super::connectivity::Connectivity;
+use crate::error::SolveFault;
 
 /// An element that has turned inside out, collapsed, or left the range of numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -8,6 +9,15 @@ use super::connectivity::Connectivity;
 pub struct Inadmissible {
     /// The element's index.
     pub element: usize,
+}
+
+impl Inadmissible {
+    /// The fault of a solution, with the element's name.
+    pub fn named(self, describe: impl Fn(usize) -> String) -> SolveFault {
+        SolveFault::Inverted {
+            element: describe(self.element),
+        }
+    }
 }
 
 /// An energy in mJ, or the first element that is inverted.

@@ -154,7 +154,7 @@ impl Tangent {
         describe: Describe,
     ) -> Result<Vec<f64>, SolveFault> {
         let (mut residual, _) = self.factorise_at(potential, u, describe)?;
-        add_product(potential, 1.0, u, motion, &mut residual).map_err(|f| inverted(f, describe))?;
+        add_product(potential, 1.0, u, motion, &mut residual).map_err(|f| f.named(describe))?;
         self.change(&residual)
     }
 
@@ -174,7 +174,7 @@ impl Tangent {
         self.at(potential, u, describe)?;
         self.skew.transpose();
         let mut forces = vec![0.0; u.len()];
-        add_product(potential, -1.0, u, motion, &mut forces).map_err(|f| inverted(f, describe))?;
+        add_product(potential, -1.0, u, motion, &mut forces).map_err(|f| f.named(describe))?;
         let change = self.change(&forces)?;
         Ok(motion.iter().zip(change).map(|(m, c)| m + c).collect())
     }
@@ -240,14 +240,14 @@ impl Tangent {
         self.take_skew(potential);
         if let Some(iterative) = &mut self.iterative {
             let linearised = iterative.linearise(potential, u, &mut residual);
-            linearised.map_err(|fault| inverted(fault, describe))?;
+            linearised.map_err(|fault| fault.named(describe))?;
             self.factorised = false;
             return Ok((residual, false));
         }
         let mut stiffness = Vec::new();
         let assembly = &self.assembly;
         let linearised = assembly.linearise(potential, u, &mut residual, &mut stiffness);
-        linearised.map_err(|fault| inverted(fault, describe))?;
+        linearised.map_err(|fault| fault.named(describe))?;
         let shifted = self.factorise(&mut stiffness)?;
         Ok((residual, shifted))
     }
@@ -330,13 +330,6 @@ impl Tangent {
         }
         self.find_columns()?;
         self.skew.complete(step).ok_or(SolveFault::Singular)
-    }
-}
-
-/// The fault of an inverted element, with its name.
-pub fn inverted(fault: Inadmissible, describe: Describe) -> SolveFault {
-    SolveFault::Inverted {
-        element: describe(fault.element),
     }
 }
 

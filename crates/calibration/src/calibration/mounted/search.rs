@@ -9,7 +9,6 @@ use crate::error::{Error, SolveFault};
 use crate::material::HyperelasticLaw;
 use crate::material::sheet::Kinematics;
 use crate::problem::sheet_energy::SheetEnergy;
-use crate::solve::tangent::inverted;
 use crate::solve::vector::{difference, moved};
 use crate::solve::{Assembly, Loading, Newton, NewtonSettings};
 
@@ -183,7 +182,7 @@ impl<'a> Search<'a> {
             let mut residual = vec![0.0; state.field.len()];
             let potential = model.potential(1.0, &[]);
             Assembly::residual(&*potential, &state.field, &mut residual)
-                .map_err(|fault| inverted(fault, &describe))?;
+                .map_err(|fault| fault.named(&describe))?;
             let change = self.newton.tangent.changes(&[residual])?;
             let mut field = moved(&state.field, 1.0, &change[0]);
             model.impose(1.0, &mut field);

@@ -3,7 +3,6 @@
 use super::ratios::{Ratios, geometric_tail};
 use super::{
     Climb, ClimbSolution, CorrectionHistory, Field, Inverted, Level, Provenance, at_stretch,
-    inverted,
 };
 use crate::error::{Error, SolveFault};
 
@@ -120,7 +119,7 @@ impl Climb<'_> {
             Err(Inverted) => {
                 self.replace_by_load_path(&mut ascent, stretch)?;
                 let force = self.force(&ascent.field);
-                force.map_err(|Inverted| at_stretch(stretch)(inverted()))?
+                force.map_err(|fault| at_stretch(stretch)(fault.into()))?
             }
         };
         Ok(ClimbSolution {

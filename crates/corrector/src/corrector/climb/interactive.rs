@@ -2,9 +2,7 @@
 
 use std::fmt;
 
-use super::{
-    Climb, ClimbSolution, CorrectionHistory, Ending, Field, Inverted, Provenance, Start, inverted,
-};
+use super::{Climb, ClimbSolution, CorrectionHistory, Ending, Field, Provenance, Start};
 use crate::error::{Error, SolveFault};
 use crate::problem::{DeformedSheet, RigidMotion};
 
@@ -38,8 +36,7 @@ impl Climb<'_> {
             weakest: self.weakest,
             enough: &|_, remaining_error| remaining_error <= limit,
         };
-        let iterated = level.iterate(sheet, field, &mut self.multigrid, &ending);
-        let reached = iterated.map_err(|Inverted| inverted())?;
+        let reached = level.iterate(sheet, field, &mut self.multigrid, &ending)?;
         if reached.remaining_error() > limit {
             return Err(SolveFault::Stalled {
                 iterations: most,
@@ -156,7 +153,7 @@ impl<'a> Interactive<'a> {
             reached = Some((error, self.climb.near(&mut field, error)?));
         }
         let (error, reached) = reached.expect("one part at least");
-        let force = self.climb.force(&field).map_err(|Inverted| inverted())?;
+        let force = self.climb.force(&field)?;
         Ok(ClimbSolution::near(field, force, error, reached))
     }
 

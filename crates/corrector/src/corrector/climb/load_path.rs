@@ -111,9 +111,7 @@ impl Climb<'_> {
         let mut x = compliance(&mut tangent, &model, Stage::first(1.0), &u, &b)?;
         let mut image = vec![0.0; x.len()];
         let product = Assembly::add_product(&plate.energy, &u, &x, &mut image);
-        product.map_err(|fault| SolveFault::Inverted {
-            element: plate.describe(fault.element),
-        })?;
+        product.map_err(|fault| fault.named(|element| plate.describe(element)))?;
         for (unknown, held) in held.into_iter().enumerate() {
             if held {
                 x[unknown] = b[unknown] - image[unknown];

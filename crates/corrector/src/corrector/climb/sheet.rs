@@ -4,6 +4,7 @@ use super::forces::forces;
 use super::grid::{Field, Grid};
 use crate::corrector::DifferenceScheme;
 use crate::corrector::sampling::{CUBIC, LINEAR, QUADRATIC};
+use crate::error::SolveFault;
 use crate::material::HyperelasticLaw;
 
 /// The sheet whose equation is solved.
@@ -33,3 +34,11 @@ impl Sheet<'_> {
 /// A field turned a cell inside out: J is not positive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Inverted;
+
+impl From<Inverted> for SolveFault {
+    fn from(_: Inverted) -> Self {
+        Self::Inverted {
+            element: "a cell on the way; use the direct method or more cells".into(),
+        }
+    }
+}

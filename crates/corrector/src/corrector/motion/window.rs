@@ -191,7 +191,7 @@ impl EquationOfMotion<'_> {
         let mut last = f64::INFINITY;
         for iteration in 0..=settings.max_iterations {
             let interval = self.linearise(window.first, &window.states);
-            let interval = interval.map_err(|fault| self.inverted(fault))?;
+            let interval = interval.map_err(|fault| fault.named(&self.motion.describe))?;
             let values = self.values(window, &interval, velocity);
             let residual = values
                 .iter()
