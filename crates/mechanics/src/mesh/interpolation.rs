@@ -94,12 +94,15 @@ impl Mesh {
 
     /// The place in mm of a point of a cell in natural coordinates.
     pub fn position(&self, cell: usize, local: [f64; 2]) -> [f64; 2] {
+        self.interpolated((cell, local), |node, axis| self.nodes[node][axis])
+    }
+
+    /// A vector at a place, from its components at the nodes.
+    fn interpolated(&self, (cell, local): Place, at: impl Fn(usize, usize) -> f64) -> [f64; 2] {
         let values = self.shape(cell).values(local);
         [0, 1].map(|axis| {
             let nodes = self.cell(cell).iter().zip(&values);
-            nodes
-                .map(|(node, value)| value * self.nodes[*node][axis])
-                .sum()
+            nodes.map(|(node, value)| value * at(*node, axis)).sum()
         })
     }
 
@@ -108,15 +111,8 @@ impl Mesh {
         self.displacement_in(displacement, self.locate(point))
     }
 
-    fn displacement_in(&self, displacement: &[f64], (cell, local): Place) -> [f64; 2] {
-        let values = self.shape(cell).values(local);
-        let component = |axis: usize| {
-            let nodes = self.cell(cell).iter().zip(&values);
-            nodes
-                .map(|(node, value)| value * displacement[2 * node + axis])
-                .sum()
-        };
-        [component(0), component(1)]
+    fn displacement_in(&self, displacement: &[f64], place: Place) -> [f64; 2] {
+        self.interpolated(place, |node, axis| displacement[2 * node + axis])
     }
 
     /// Displacement interpolated at all nodes of another mesh of the specimen; on a seam, that of the side to which a node belongs.
