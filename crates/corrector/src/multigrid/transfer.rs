@@ -11,34 +11,31 @@ pub struct Interpolation {
 }
 
 impl Interpolation {
-    /// Linear between the two nodes beside each place.
-    pub fn linear(nodes: &[f64], positions: &[f64]) -> Self {
-        Self::lagrange(nodes, positions, 2)
-    }
-
-    /// By cubics through the four nodes around each place, or through all where there are fewer.
-    pub fn cubic(nodes: &[f64], positions: &[f64]) -> Self {
-        Self::lagrange(nodes, positions, 4.min(nodes.len()))
+    /// By the polynomials through so many nodes around each place, or through all where there are fewer.
+    pub fn around(nodes: &[f64], positions: &[f64], width: usize) -> Self {
+        let width = width.min(nodes.len());
+        Self::through(nodes, positions, width, |after| {
+            after.saturating_sub(width / 2).min(nodes.len() - width)
+        })
     }
 
     /// By the polynomials of a degree through the nodes of each element.
     pub fn of_elements(nodes: &[f64], positions: &[f64], degree: usize) -> Self {
         let last = (nodes.len() - 1) / degree - 1;
-        let share = |position: &f64| {
-            let after = nodes.partition_point(|node| node <= position);
-            let first = (after.saturating_sub(1) / degree).min(last) * degree;
-            (first, shares(&nodes[first..=first + degree], *position))
-        };
-        Self {
-            shares: positions.iter().map(share).collect(),
-            width: degree + 1,
-        }
+        Self::through(nodes, positions, degree + 1, |after| {
+            (after.saturating_sub(1) / degree).min(last) * degree
+        })
     }
 
-    fn lagrange(nodes: &[f64], positions: &[f64], width: usize) -> Self {
+    /// By the polynomials through so many nodes, the first of which follows from the number of nodes up to the place.
+    fn through(
+        nodes: &[f64],
+        positions: &[f64],
+        width: usize,
+        first: impl Fn(usize) -> usize,
+    ) -> Self {
         let share = |position: &f64| {
-            let after = nodes.partition_point(|node| node <= position);
-            let first = after.saturating_sub(width / 2).min(nodes.len() - width);
+            let first = first(nodes.partition_point(|node| node <= position));
             (first, shares(&nodes[first..first + width], *position))
         };
         Self {
@@ -82,7 +79,7 @@ struct Axis {
 
 impl Axis {
     fn new(coarse: &[f64], fine: &[f64]) -> Self {
-        let linear = Interpolation::linear(coarse, fine);
+        let linear = Interpolation::around(coarse, fine, 2);
         let positions: Vec<(usize, f32)> = linear
             .shares()
             .map(|(first, shares)| (first, shares[1] as f32))
@@ -164,7 +161,7 @@ mod tests {
         let cubic = |x: f64| 1.0 - x + 2.0 * x * x - 0.3 * x * x * x;
         let nodes = [0.0, 0.4, 1.0, 1.3, 2.5, 3.0];
         let positions = [0.0, 0.1, 0.4, 0.9, 1.2, 2.6, 3.0];
-        let interpolation = Interpolation::cubic(&nodes, &positions);
+        let interpolation = Interpolation::around(&nodes, &positions, 4);
         for (position, (first, shares)) in positions.iter().zip(interpolation.shares()) {
             let pairs = shares.iter().zip(&nodes[first..]);
             let value: f64 = pairs.map(|(share, node)| share * cubic(*node)).sum();

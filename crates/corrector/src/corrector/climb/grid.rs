@@ -232,7 +232,7 @@ impl Field {
             if grid.has_cubics() {
                 Interpolation::of_elements(nodes, positions, grid.degree)
             } else {
-                Interpolation::cubic(nodes, positions)
+                Interpolation::around(nodes, positions, 4)
             }
         });
         let mut field = Self::zeros(finer);
