@@ -111,7 +111,7 @@ fn same_projection(form: &str, distance: f64) -> Check {
 fn properties(rows: &SparseRows, square: &SparseRows) -> Result<Vec<Check>, FactorFault> {
     let (unknowns, conditions) = (rows.columns(), rows.len());
     let matrix = CorrectionMatrix::new(rows, vec![1.0; unknowns])?;
-    let (y, s, b) = (matrix.y(), matrix.s(), matrix.b());
+    let (y, s, b) = (matrix.y(), matrix.s(), rows.to_dense());
     let identity = DMatrix::identity(conditions, conditions);
     let y_of_square = CorrectionMatrix::new(square, vec![1.0; unknowns])?.y();
     let largest = |what: &str, limit, source, matrix: DMatrix<f64>| {
@@ -126,12 +126,12 @@ fn properties(rows: &SparseRows, square: &SparseRows) -> Result<Vec<Check>, Fact
     Ok(vec![
         largest("Y − Yᵀ", 1e-12, "Eq. 18", &y - y.transpose()),
         largest("Y Y − Y", 1e-12, "Eq. 18", &y * &y - &y),
-        largest("B Y", 1e-12, "Eq. 14", b * &y),
+        largest("B Y", 1e-12, "Eq. 14", &b * &y),
         largest(
             "S B Bᵀ − I",
             1e-11,
             "Eq. 19",
-            s * b * b.transpose() - identity,
+            s * &b * b.transpose() - identity,
         ),
         rank.equal((unknowns - conditions) as f64, 0.0, "i less the rows of B"),
         largest("Y of a square B", 1e-12, "design of Eq. 22-23", y_of_square),

@@ -15,7 +15,6 @@ use crate::solve::{FactorFault, SparseRows};
 /// zero, and the data have no influence.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CorrectionMatrix {
-    jacobian: DMatrix<f64>,
     weights: Vec<f64>,
     /// Orthonormal columns that span the rows of B W^(−½): n × m.
     q: DMatrix<f64>,
@@ -30,12 +29,7 @@ impl CorrectionMatrix {
     /// [`FactorFault`] when rows depend on each other.
     pub fn new(rows: &SparseRows, weights: Vec<f64>) -> Result<Self, FactorFault> {
         let (q, r) = weighted_qr(rows, &weights)?;
-        Ok(Self {
-            jacobian: rows.to_dense(),
-            weights,
-            q,
-            r,
-        })
+        Ok(Self { weights, q, r })
     }
 
     /// Y, i × i.
@@ -56,10 +50,5 @@ impl CorrectionMatrix {
             .solve_upper_triangular(&DMatrix::identity(rows, rows));
         let inverse = inverse.expect("independent rows");
         &inverse * inverse.transpose()
-    }
-
-    /// B.
-    pub fn b(&self) -> &DMatrix<f64> {
-        &self.jacobian
     }
 }
