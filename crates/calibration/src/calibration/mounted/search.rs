@@ -182,7 +182,7 @@ impl<'a> Search<'a> {
             let mut residual = vec![0.0; state.field.len()];
             let potential = model.potential(1.0, &[]);
             Assembly::residual(&*potential, &state.field, &mut residual)
-                .map_err(|fault| fault.named(&describe))?;
+                .map_err(|fault| fault.named(describe))?;
             let change = self.newton.tangent.changes(&[residual])?;
             let mut field = moved(&state.field, 1.0, &change[0]);
             model.impose(1.0, &mut field);
