@@ -221,10 +221,11 @@ impl Tracker {
         let mut matches: Vec<Option<Match>> = vec![None; self.centres.len()];
         let mut attempts = vec![0; matches.len()];
         if let Some((_, states)) = &self.before {
-            // The fields of the image before are far from this one's where the step is large: a few points find it, and lead to their neighbours.
+            // The fields of the image before are far from this one's where the step is large: a few points find it, and lead to their
+            // neighbours; parts that they do not lead to move by themselves.
             for every in [SAMPLED, 1] {
-                let unreached = |point: &usize| matches[*point].is_none() && attempts[*point] == 0;
-                let points = (0..states.len()).step_by(every).filter(unreached);
+                let points = (0..states.len()).step_by(every);
+                let points = points.filter(|point| matches[*point].is_none());
                 let guesses =
                     points.filter_map(|point| Some((point, states[point].as_ref()?.warp)));
                 for (point, one) in follower.find_all(spline, guesses.collect()) {
