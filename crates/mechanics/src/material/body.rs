@@ -272,7 +272,7 @@ impl<L: BodyLaw + 'static> HyperelasticLaw for BodySheet<L> {
     }
 
     fn stresses(&self, gradients: [&[f64]; 4], stresses: [&mut [f64]; 4]) -> bool {
-        self.each::<points::Stress, 4>(gradients, stresses)
+        self.stresses_at(gradients, stresses)
     }
 
     fn responses(
@@ -281,7 +281,7 @@ impl<L: BodyLaw + 'static> HyperelasticLaw for BodySheet<L> {
         responses: [&mut [f64]; COMPONENTS],
         _tangents: bool,
     ) -> bool {
-        self.each::<points::Response, COMPONENTS>(gradients, responses)
+        self.responses_at(gradients, responses)
     }
 
     fn tension(&self, _: [f64; 2], strain: f64) -> TensionResponse {

@@ -10,8 +10,21 @@ use crate::material::measures::{Derivatives, Measures};
 use crate::material::sheet::{COMPONENTS, Kinematics, PlaneTensor};
 
 impl<L: BodyLaw> BodySheet<L> {
-    /// Computes a result at every point of a list; `false` where one is turned inside out.
-    pub(super) fn each<M: Computed<N>, const N: usize>(
+    /// As [`HyperelasticLaw::stresses`](crate::material::HyperelasticLaw::stresses).
+    pub(super) fn stresses_at(&self, gradients: [&[f64]; 4], computed: [&mut [f64]; 4]) -> bool {
+        self.each::<Stress, 4>(gradients, computed)
+    }
+
+    /// As [`HyperelasticLaw::responses`](crate::material::HyperelasticLaw::responses).
+    pub(super) fn responses_at(
+        &self,
+        gradients: [&[f64]; 4],
+        computed: [&mut [f64]; COMPONENTS],
+    ) -> bool {
+        self.each::<Response, COMPONENTS>(gradients, computed)
+    }
+
+    fn each<M: Computed<N>, const N: usize>(
         &self,
         gradients: [&[f64]; 4],
         computed: [&mut [f64]; N],
@@ -102,13 +115,12 @@ impl<S: Copy> Lanes<S> {
 }
 
 /// A result computed from the measures and derivatives at a point.
-pub(super) trait Computed<const N: usize> {
+trait Computed<const N: usize> {
     /// The components of the result.
     fn of(measures: &Measures, w: &Derivatives) -> [f64; N];
 }
 
-/// The stress.
-pub(super) struct Stress;
+struct Stress;
 
 impl Computed<4> for Stress {
     #[inline(always)]
@@ -117,8 +129,7 @@ impl Computed<4> for Stress {
     }
 }
 
-/// Energy, stress and tangent.
-pub(super) struct Response;
+struct Response;
 
 impl Computed<COMPONENTS> for Response {
     #[inline(always)]
@@ -127,6 +138,8 @@ impl Computed<COMPONENTS> for Response {
     }
 }
 
+/// Computes the result for every point of a list; `false` where one is turned inside out.
+///
 /// Straight-line code for each point, as for laws that keep their volume: no operation is fused with another, so that all
 /// machines give the same bits.
 struct PointLoop<'a, L, M, const N: usize> {
