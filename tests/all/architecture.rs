@@ -39,7 +39,7 @@ const DOORS: &[(&str, &[&str])] = &[
         ],
     ),
     ("image::", &["crates/images/src/images/read.rs"]),
-    ("tiff::", &["crates/images/src/images/read.rs"]),
+    ("tiff::", &["crates/images/src/images/read"]),
     ("plotters::", &["crates/report/src/output/picture"]),
     ("tiny_skia::", &["crates/report/src/output/picture"]),
     ("pdf_writer::", &["crates/report/src/output/picture/pdf.rs"]),

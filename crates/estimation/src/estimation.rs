@@ -100,10 +100,11 @@ pub fn estimate(
 }
 
 /// The nearest field and the residuals of its markers alone, as a start of something else: without verdict, intervals and stresses. Edges without
-/// a stated condition are loaded, or may be freed by the data, which takes many times longer.
+/// a stated condition are loaded, or may be freed by the data, which takes many times longer. As [`estimate`], it has no displacement where it
+/// ends at gross errors.
 ///
 /// # Errors
-/// As [`estimate`].
+/// As [`estimate`], and where measured forces leave no solution.
 pub fn nearest_field(
     specimen: &Specimen,
     markers: &[Marker],
@@ -116,14 +117,16 @@ pub fn nearest_field(
         observations: &observations,
         knowledge,
     };
-    let nearest = if may_free_edges {
+    let nearest = if may_free_edges || knowledge.physics != Physics::Exact {
         free_edges::search(&task, edges)?.0
     } else {
         Equations::new(&task, &edges)?.run(MOST_STEPS)?
     };
+    let markers = nearest.markers(None);
+    let has_ended = nearest.ends_at_gross_errors(&markers);
     Ok(FieldEstimate {
-        markers: nearest.markers(None),
-        displacement: nearest.field,
+        markers,
+        displacement: if has_ended { Vec::new() } else { nearest.field },
         ..FieldEstimate::default()
     })
 }

@@ -160,5 +160,6 @@ fn of_file(file: &Path, like: &Request, inputs: &mut Vec<PathBuf>) -> Result<Nam
 /// A specimen whose parameters are those of all specimens.
 fn prepared(mut request: Request) -> Result<MarkerStudy, Error> {
     request.conditions.fit.clear();
-    MarkerStudy::prepare(request, &|_| ())
+    let progress = Progress::of(0);
+    MarkerStudy::prepare(request, &|action| progress.tell(action))
 }

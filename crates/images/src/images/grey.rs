@@ -8,6 +8,11 @@ pub struct GreyImage {
     values: Vec<f32>,
 }
 
+/// The luminance of red, green and blue (ITU-R BT.709).
+pub fn luminance([r, g, b]: [f32; 3]) -> f32 {
+    0.2126 * r + 0.7152 * g + 0.0722 * b
+}
+
 impl GreyImage {
     /// Of `width` × `height` values in the unit of the camera.
     ///

@@ -10,10 +10,10 @@ use rayon::prelude::*;
 use tiff::ColorType;
 use tiff::decoder::{Decoder, DecodingResult};
 
-use super::grey::GreyImage;
+use super::grey::{GreyImage, luminance};
 use crate::error::Error;
 use gelbench_base::document::given;
-use palette::{is_of_palette, numbers};
+use palette::{as_grey, is_of_palette};
 
 mod palette;
 
@@ -317,11 +317,6 @@ fn of_other<R: BufRead + Seek>(open: impl Fn() -> Result<R, Error>) -> Result<Gr
     Ok(GreyImage::new(width, height, values))
 }
 
-/// The luminance of red, green and blue (ITU-R BT.709).
-fn luminance([r, g, b]: [f32; 3]) -> f32 {
-    0.2126 * r + 0.7152 * g + 0.0722 * b
-}
-
 /// Grey values of pixels with so many samples: the first one, or the luminance of three or more.
 fn greys<T: Copy + Sync>(samples: &[T], each: usize, value: impl Fn(T) -> f32 + Sync) -> Vec<f32> {
     let grey = |pixel: &[T]| match pixel {
@@ -343,7 +338,7 @@ fn of_tiff<R: std::io::Read + Seek>(mut decoder: Decoder<R>) -> Result<GreyImage
             "its colours are {other:?}, where grey or RGB is expected"
         )),
         Err(fault) if is_of_palette(&fault) => {
-            let (decoder, greys) = numbers(&mut decoder)?;
+            let (decoder, greys) = as_grey(&mut decoder)?;
             let mut image = of_samples(decoder, 1)?;
             let grey = |value: f32| greys.get(value as usize).copied().unwrap_or_default();
             image

@@ -1,5 +1,9 @@
 //! The pattern of a first image followed through later ones.
 
+use std::sync::OnceLock;
+
+use rayon::prelude::*;
+
 use super::curvature::add_curvature;
 use super::defects::{dead, repaired, saturated, warnings};
 use super::gradient::Reference;
@@ -14,10 +18,6 @@ use super::state::{State, Tracked};
 use super::subset::{Match, Subset};
 use super::warp::Order;
 use crate::error::{Diagnostic, Error};
-
-use std::sync::OnceLock;
-
-use rayon::prelude::*;
 
 /// How a pattern is followed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,7 +61,7 @@ pub struct Tracker {
 }
 
 /// Of so many points one starts from its field in the image before.
-const SAMPLED: usize = 16;
+const SAMPLED: usize = 17;
 
 /// The most seeds of separate parts of a specimen.
 const MOST_SEEDS: usize = 12;
@@ -221,18 +221,18 @@ impl Tracker {
         let mut matches: Vec<Option<Match>> = vec![None; self.centres.len()];
         let mut attempts = vec![0; matches.len()];
         if let Some((_, states)) = &self.before {
-            // The fields of the image before are far from this one's where the step is large: a few points find it, and lead to their
-            // neighbours; parts that they do not lead to move by themselves.
+            // Where the step is large, the fields of the image before are far from those of this one, and most searches from them fail. So a few
+            // points are searched first, and lead to their neighbours; points that these do not lead to start from their own field.
+            let known: Vec<usize> = (0..states.len())
+                .filter(|point| states[*point].is_some())
+                .collect();
             for every in [SAMPLED, 1] {
-                let points = (0..states.len()).step_by(every);
+                let points = known.iter().copied().step_by(every);
                 let points = points.filter(|point| matches[*point].is_none());
                 let guesses =
                     points.filter_map(|point| Some((point, states[point].as_ref()?.warp)));
                 for (point, one) in follower.find_all(spline, guesses.collect()) {
                     matches[point] = one;
-                }
-                if matches.iter().all(Option::is_none) {
-                    break;
                 }
                 follower.spread(spline, &mut matches, &mut attempts);
             }

@@ -345,8 +345,11 @@ fn roughness(lines: &[Vec<[f64; 2]>], outer: &[[f64; 2]]) -> f64 {
 /// The median distance of points to their nearest neighbour over √(area/points); distances beyond twice that count as twice.
 fn regularity(points: &[[f64; 2]], area: f64) -> f64 {
     let side = (area / points.len() as f64).sqrt();
-    let near = nearest(points, 1).into_iter().zip(points);
-    let near = near.map(|(others, point)| distance(*point, points[others[0]]).min(2.0 * side));
+    let near = nearest(points, 2).into_iter().zip(points);
+    let near = near.map(|(others, point)| {
+        let distances = others.iter().map(|other| distance(*point, points[*other]));
+        distances.fold(2.0 * side, f64::min)
+    });
     median(near) / side
 }
 

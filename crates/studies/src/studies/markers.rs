@@ -62,7 +62,7 @@ pub use materials::in_plane;
 use materials::{check_regions, of_divided, of_materials};
 pub use request::{MeshSource, Request};
 pub use specimen_file::SpecimenFile;
-use specimen_mesh::{SpecimenMesh, mesh};
+use specimen_mesh::mesh;
 pub use stated_conditions::keys;
 pub use verdict::worst as worst_answer;
 
@@ -148,14 +148,8 @@ impl MarkerStudy {
             .conditions
             .take_forces(request.forces.as_deref(), &field.series)?;
         field.warnings.extend(force_warnings);
-        let SpecimenMesh {
-            mut mesh,
-            cell_size,
-            origin,
-            mut warnings,
-            doubts,
-            unknown_gap,
-        } = mesh(&request, &field)?;
+        let made = mesh(&request, &field)?;
+        let (mut mesh, mut warnings) = (made.mesh, made.warnings);
         let edges = request.conditions.edges.iter();
         name_parts(&mut mesh, edges.map(|(name, _)| name.as_str()));
         area::name(&mut mesh, &request.conditions.areas)?;
@@ -185,18 +179,18 @@ impl MarkerStudy {
             regions,
             thickness: request.thickness,
             mesh,
-            cell_size,
-            mesh_origin: origin,
+            cell_size: made.cell_size,
+            mesh_origin: made.origin,
             coarse,
             series: placed.series,
             understood: field.understood,
             conditions: request.conditions,
             regressed,
             warnings: [field.warnings, warnings].concat(),
-            doubts: of_reading(doubts, thickness),
+            doubts: of_reading(made.doubts, thickness),
             mistake: None,
             mistaken_images: None,
-            unknown_gap,
+            unknown_gap: made.unknown_gap,
             edge_accuracy: 0.0,
         };
         let Some(images) = images else {
@@ -319,13 +313,14 @@ impl MarkerStudy {
         estimate.map_err(|error| of_one_frame(error, frame.number, self.series.frames.len()))
     }
 
-    /// As [`nearest_field`] for a frame: the displacements of the nodes.
+    /// The displacements of the nodes that are nearest to a frame, by [`nearest_field`] where that is enough.
     fn nearest_displacement(&self, frame: &Frame, may_free_edges: bool) -> Result<Vec<f64>, Error> {
         let specimen = self.specimen();
         let nearest = self.weighted(&frame.markers, self.knowledge(frame), &|knowledge| {
             nearest_field(&specimen, &frame.markers, knowledge, may_free_edges)
         });
-        Ok(nearest?.displacement)
+        let estimate = nearest.or_else(|_| self.estimate_frame(frame))?;
+        Ok(estimate.displacement)
     }
 
     fn knowledge(&self, frame: &Frame) -> Knowledge {

@@ -91,7 +91,10 @@ fn check_legacy(bytes: &[u8]) -> Result<(), Unreadable> {
 fn of_piece(piece: UnstructuredGridPiece) -> Result<UnstructuredGrid, Unreadable> {
     let points = numbers(&piece.points).ok_or("has points that are not numbers")?;
     let kinds = piece.cells.types.iter().map(|kind| *kind as u8);
-    let (_, vertices) = piece.cells.cell_verts.into_legacy();
+    let vertices = piece.cells.cell_verts;
+    // Positions of cells that contradict each other panic.
+    let (_, vertices) =
+        catch_unwind(AssertUnwindSafe(|| vertices.into_legacy())).map_err(|_| CUT_OFF)?;
     Ok(UnstructuredGrid {
         points,
         cells: kinds.zip(cells(&vertices)?).collect(),

@@ -163,13 +163,17 @@ fn find(blocks: &Blocks<2, 2>, row: usize, column: usize) -> usize {
 fn add(blocks: &mut Blocks<2, 2>, rows: &[u32], unknowns: &[u32], stiffness: &[f64]) {
     let size = unknowns.len();
     for (i, from) in unknowns.iter().enumerate() {
+        // Both unknowns of a node follow each other.
+        let mut last = (NONE, 0);
         for (k, to) in unknowns.iter().enumerate() {
             let [from, to] = [*from, *to].map(|unknown| unknown as usize);
             let [row, column] = [rows[from], rows[to]];
             if row != NONE && column != NONE && row >= column {
-                let position = find(blocks, row as usize, column as usize);
+                if last.0 != column {
+                    last = (column, find(blocks, row as usize, column as usize));
+                }
                 let value = stiffness[i.max(k) * size + i.min(k)];
-                blocks.values[position][from % 2][to % 2] += value;
+                blocks.values[last.1][from % 2][to % 2] += value;
             }
         }
     }

@@ -57,7 +57,7 @@ impl MarkerStudy {
             study: &self,
         };
         let measured: Vec<Option<Measured>> = if misfit.are_precise {
-            let together = self.series.frames.chunks(rayon::current_num_threads());
+            let together = self.series.frames.chunks(4 * rayon::current_num_threads());
             let measured = together.map(|frames| {
                 frames.iter().for_each(tell);
                 let frames = frames.par_iter().map(|frame| misfit.about_tracked(frame));
@@ -100,6 +100,7 @@ fn accuracy(pixel: f64, is_mask: bool) -> (f64, String) {
 struct ImageMisfit<'a> {
     images: &'a TrackedImages,
     patches: Patches<'a>,
+    /// Whether most patches lead to their displacements by themselves.
     are_precise: bool,
     study: &'a MarkerStudy,
 }
@@ -126,7 +127,8 @@ impl ImageMisfit<'_> {
         self.settled(frame, start)
     }
 
-    /// Patches that lead to their displacements by themselves take their gradient alone from the field.
+    /// Of the field, patches that lead to their displacements by themselves need only the gradient: whether edges are free does not matter to
+    /// them.
     fn nearest_displacement(&self, frame: &Frame) -> Option<Vec<f64>> {
         let may_free_edges = !self.are_precise;
         self.study.nearest_displacement(frame, may_free_edges).ok()

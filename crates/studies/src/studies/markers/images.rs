@@ -5,7 +5,7 @@ use crate::error::Error;
 use crate::markers::{MarkerFiles, read};
 use crate::studies::images::{ImageRequest, TrackedImages};
 
-/// The markers of files, or those of images that are followed, each of which is reported before it begins, and these.
+/// The markers of files; or those of images that are followed, and these images. Each image is reported before it is followed.
 ///
 /// # Errors
 /// As of [`read`] and [`ImageRequest::follow`].

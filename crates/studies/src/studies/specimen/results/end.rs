@@ -26,7 +26,7 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// The same for what is computed besides: where a path ends is told of the meshes whose results are given.
+    /// A run of its own for meshes whose results are not given: where their paths end is not told.
     pub fn aside(&self) -> Self {
         Self::new(self.specimen, self.progress)
     }
