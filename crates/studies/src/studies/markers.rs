@@ -144,9 +144,8 @@ impl MarkerStudy {
     ) -> Result<Self, Error> {
         let (card, regions) = materials::in_common_plane(card, &mut request.conditions)?;
         let (mut field, images) = images::read_field(&request, watch)?;
-        let force_warnings = request
-            .conditions
-            .take_forces(request.forces.as_deref(), &field.series)?;
+        let table = request.forces.as_deref();
+        let force_warnings = request.conditions.take_forces(table, &field.series)?;
         field.warnings.extend(force_warnings);
         let made = mesh(&request, &field)?;
         let (mut mesh, mut warnings) = (made.mesh, made.warnings);
@@ -166,8 +165,8 @@ impl MarkerStudy {
             placed.outside = 0;
             warnings.extend(request.conditions.ignored_for_computed_fields());
         }
-        let forces = &request.conditions.forces;
-        force_signs::check(forces, &placed.series, &mesh, &*card.law)?;
+        let conditions = request.conditions;
+        force_signs::check(&conditions.forces, &placed.series, &mesh, &*card.law)?;
         warnings.extend(of_outside(placed.outside));
         warnings.extend(of_materials(&card, &regions, &mesh));
         warnings.extend(of_divided(&regions, &mesh));
@@ -184,7 +183,7 @@ impl MarkerStudy {
             coarse,
             series: placed.series,
             understood: field.understood,
-            conditions: request.conditions,
+            conditions,
             regressed,
             warnings: [field.warnings, warnings].concat(),
             doubts: of_reading(made.doubts, thickness),
