@@ -1,8 +1,8 @@
 //! Which of its sides the edges of a specimen's outline belong to.
 //!
 //! Sides are found on the outline's convex hull: they go from corner to corner and are named by where they face. A notch or a
-//! waist, no deeper than it is wide, belongs to the side that it lies in, however the specimen is turned. Deeper ones, such as a cut or
-//! the inside of a U, belong to none: they are no part of what is gripped or pulled beside them. Where the hull bridges the angle
+//! waist, no deeper than it is wide, belongs to the side that it lies in, however the specimen is turned, and so does a dent of a rough edge.
+//! Deeper ones, such as a cut or the inside of a U, belong to none: they are no part of what is gripped or pulled beside them. Where the hull bridges the angle
 //! between two sides, as that of an L, its edges are named by where they face themselves. Among scattered markers corners are rounded: where
 //! four sides are not seen from corner to corner, they go between the places where the hull turns over some length.
 
@@ -16,6 +16,9 @@ const LEAST: f64 = 0.2;
 
 /// Share of a hull's edge within which points of the line lie on it.
 const NEAR: f64 = 0.02;
+
+/// Dents no deeper than this share of the specimen's extent are roughness of an edge, such as that of a mask.
+const ROUGH: f64 = 0.01;
 
 type Edge = [[f64; 2]; 2];
 
@@ -36,20 +39,30 @@ pub fn sides(line: &[[f64; 2]]) -> Vec<(Option<&'static str>, Edge)> {
         (0..edges.len()).map(|edge| vec![edge]).collect(),
     ];
     let has_all = |chains: &&Vec<Vec<usize>>| has_four_sides(&edges, chains);
+    let extents = [0, 1].map(|axis| extremes(line.iter().map(|point| point[axis])));
+    let rough = ROUGH
+        * extents
+            .map(|[low, high]| high - low)
+            .into_iter()
+            .fold(0.0, f64::max);
     let mut named = Vec::new();
     for chain in ways.iter().find(has_all).unwrap_or(&ways[0]) {
         let side = facing(&edges, chain);
         for (position, number) in chain.iter().enumerate() {
             let amid = position > 0 && position + 1 < chain.len();
-            named.extend(spans[*number].named(side, amid));
+            named.extend(spans[*number].named((side, amid), rough));
         }
     }
     named
 }
 
 impl Span {
-    /// Its edges with their sides, on a side of the hull, amid others of the same side or not.
-    fn named(&self, side: &'static str, amid: bool) -> Vec<(Option<&'static str>, Edge)> {
+    /// Its edges with their sides, on a side of the hull, amid others of the same side or not; dents are rough edges up to a depth.
+    fn named(
+        &self,
+        (side, amid): (&'static str, bool),
+        rough: f64,
+    ) -> Vec<(Option<&'static str>, Edge)> {
         let near = NEAR * length(self.edge[0], self.edge[1]);
         let off = |position: usize| distance(self.edge, self.points[position]);
         let last = self.points.len() - 1;
@@ -71,7 +84,7 @@ impl Span {
         let pockets = on.windows(2).flat_map(|pair| {
             let (from, to) = (pair[0], pair[1]);
             let depth = (from..=to).map(off).fold(0.0, f64::max);
-            let is_shallow = depth <= length(self.points[from], self.points[to]);
+            let is_shallow = depth <= length(self.points[from], self.points[to]).max(rough);
             let name = is_shallow.then_some(side);
             pieces[from..to].iter().map(move |edge| (name, *edge))
         });
@@ -266,6 +279,27 @@ mod tests {
         ];
         assert!((total(&u, Some("top")) - 20.0).abs() < 1e-9);
         assert!((total(&u, None) - 70.0).abs() < 1e-9);
+    }
+
+    /// As the edge of a mask, whose pixels leave slits half a thousandth of it wide.
+    #[test]
+    fn slits_of_a_rough_edge_belong_to_its_side() {
+        let right = (0..10).flat_map(|slit| {
+            let y = 2.0 * f64::from(slit);
+            [
+                [60.0, y],
+                [60.0, y + 1.0],
+                [59.5, y + 1.01],
+                [60.0, y + 1.02],
+            ]
+        });
+        let line: Vec<[f64; 2]> = [[0.0, 0.0]]
+            .into_iter()
+            .chain(right)
+            .chain([[60.0, 20.0], [0.0, 20.0]])
+            .collect();
+        assert!(total(&line, None) < 1e-9);
+        assert!((total(&line, Some("right")) - 29.8).abs() < 0.1);
     }
 
     #[test]
