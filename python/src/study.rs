@@ -53,9 +53,9 @@ pub fn run_sheet(
 ) -> PyResult<Results> {
     run_watched(py, progress, |watch| {
         let mut read = read_sheet(&study, files, mesh, allow_large)?;
-        let card = watched(material.in_study(&read.made.card), watch);
-        read.made = read.made.with_card(card);
-        let (kind, name) = sheet_kind(&read.made);
+        let card = watched(material.in_study(&read.content.card), watch);
+        read.content = read.content.with_card(card);
+        let (kind, name) = sheet_kind(&read.content);
         let progress = |what: &str| watch.tell(what);
         let ready = specimen::ready(kind, name.into(), &study, read);
         let results = ready.compute(Progress::to(&progress))?;
@@ -99,7 +99,7 @@ fn read_sheet(
         }
         None => kinds::read_sheet(Path::new("sheet"), study, budget),
     })?;
-    if !read.made.regions.is_empty() {
+    if !read.content.regions.is_empty() {
         let message = "the study states several materials, and a sheet in Python has the one that it is given";
         return Err(Error::input(
             message,
@@ -195,7 +195,7 @@ pub fn solve_sheet(
     let kind = kind.map_err(|error| exception(py, &error))?;
     let work = |watch: &Arc<Watch>| {
         let Loaded {
-            made: read,
+            content: read,
             warnings,
             ..
         } = read_sheet(study, files, mesh, allow_large)?;

@@ -125,7 +125,7 @@ fn compute(options: &Options) -> Result<Comparison, Error> {
     let progress = studies::Progress::to(&report);
     let read = kinds::read_sheet(path, &text, options.large.budget())?;
     warn(&read.warnings);
-    let (title, specimen) = (read.title, read.made);
+    let (title, specimen) = (read.title, read.content);
     let last = specimen.factors[specimen.factors.len() - 1];
     let factor = options.factor.unwrap_or(last);
     check_factor(&specimen, factor, last)?;

@@ -96,8 +96,8 @@ pub fn run(options: &Options) -> Outcome {
     let read = kinds::read_sheet(path, &text, options.large.budget())?;
     warn(&read.warnings);
     let written = match options.target {
-        Target::Elements(code) => input_file(&read.title, &read.made, code, options)?,
-        Target::Sofa => scene(&read.title, &read.made)?,
+        Target::Elements(code) => input_file(&read.title, &read.content, code, options)?,
+        Target::Sofa => scene(&read.title, &read.content)?,
     };
     let stem = path
         .file_stem()

@@ -15,14 +15,14 @@ fn computed(text: &str, card: Option<Card>) -> Outcome {
     let case = kind_of("study.toml", text).unwrap().unwrap();
     let budget = Budget::default();
     if case.name == specimen::KIND {
-        let strip = specimen::load(case, file, text, budget).unwrap().made;
+        let strip = specimen::load(case, file, text, budget).unwrap().content;
         let strip = match card {
             Some(card) => strip.with_card(card),
             None => strip,
         };
         return specimen::compute(&strip, Progress::silent()).unwrap();
     }
-    let plate = motion::load(case, file, text, budget).unwrap().made;
+    let plate = motion::load(case, file, text, budget).unwrap().content;
     let plate = match card {
         Some(card) => plate.with_card(card),
         None => plate,

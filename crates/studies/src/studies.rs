@@ -221,7 +221,7 @@ impl Kind {
         read: impl FnOnce(&Section, &Path) -> Option<T>,
     ) -> Result<Loaded<T>, Error> {
         let read = self.read_with(file, text, budget, read)?;
-        Ok(read.map(|made| made.expect(SOUND)))
+        Ok(read.map(|content| content.expect(SOUND)))
     }
 
     /// The keys that are looked up when `read` reads a text.
@@ -273,22 +273,22 @@ impl Kind {
         let folder = file.parent().unwrap_or(Path::new("."));
         let file = file.display().to_string();
         let faults = Faults::within(budget);
-        let (title, made, output) = {
+        let (title, content, output) = {
             let document = Document::parse(&file, text, &faults);
             let defaults = self.defaults(&document, &faults);
             let root = document.root(Some(&defaults), &faults);
             root.text("kind");
             let title = self.title(&root, text, folder);
-            let made = read(&root, folder);
+            let content = read(&root, folder);
             let output = self.output(&root);
             root.unknown_keys();
-            (title, made, output)
+            (title, content, output)
         };
         let defaults = faults.defaults();
         let warnings = faults.finish()?;
         Ok(Loaded {
             title,
-            made,
+            content,
             output,
             defaults,
             warnings,
@@ -317,7 +317,7 @@ pub struct Loaded<T> {
     /// Its title.
     pub title: String,
     /// The value that its reader returned.
-    pub made: T,
+    pub content: T,
     /// What it writes.
     pub output: OutputSettings,
     /// The keys that it does not state, with the defaults used.
@@ -331,7 +331,7 @@ impl<T> Loaded<T> {
     fn map<U>(self, make: impl FnOnce(T) -> U) -> Loaded<U> {
         Loaded {
             title: self.title,
-            made: make(self.made),
+            content: make(self.content),
             output: self.output,
             defaults: self.defaults,
             warnings: self.warnings,
@@ -347,7 +347,7 @@ impl PreparedStudy {
             kind: kind.name,
             text: text.to_owned(),
             defaults: read.defaults,
-            computation: read.made,
+            computation: read.content,
             warnings: read.warnings,
             output: read.output,
             about: format!("a study of the kind {}", kind.name),

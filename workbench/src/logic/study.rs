@@ -110,9 +110,9 @@ impl Scene {
         let shown = text.lines().find_map(|line| line.strip_prefix(LOOK));
         let look = shown.and_then(|look| serde_json::from_str(look).ok());
         let scene = match kind_of(&file.display().to_string(), &text)? {
-            None => of_specimen(plate::load(file, &text, Budget::USUAL)?.made)?,
+            None => of_specimen(plate::load(file, &text, Budget::USUAL)?.content)?,
             Some(kind) if kind.name == specimen::KIND => {
-                of_specimen(specimen::load(kind, file, &text, Budget::USUAL)?.made)?
+                of_specimen(specimen::load(kind, file, &text, Budget::USUAL)?.content)?
             }
             Some(kind) => {
                 return Err(Error::input(

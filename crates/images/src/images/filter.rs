@@ -21,15 +21,9 @@ pub fn symmetric(image: &GreyImage, half: &[f32]) -> GreyImage {
     let row = |values: &[f32], out: &mut [f32]| {
         let at = |x: usize| values[mirrored(x as isize - reach as isize, width)];
         let padded: Vec<f32> = (0..width + 2 * reach).map(at).collect();
-        for (k, weight) in half.iter().enumerate() {
-            let sides = if k == 0 {
-                vec![reach]
-            } else {
-                vec![reach - k, reach + k]
-            };
-            for side in sides {
-                add(out, *weight, &padded[side..side + width]);
-            }
+        for (shift, weight) in shifts(half) {
+            let from = reach.saturating_add_signed(shift);
+            add_scaled(out, weight, &padded[from..from + width]);
         }
     };
     let mut along = vec![0.0; width * height];
@@ -39,19 +33,25 @@ pub fn symmetric(image: &GreyImage, half: &[f32]) -> GreyImage {
     rows.for_each(|(out, values)| row(values, out));
     let mut both = vec![0.0; width * height];
     both.par_chunks_mut(width).enumerate().for_each(|(y, out)| {
-        for (k, weight) in half.iter().enumerate() {
-            let (y, k) = (y as isize, k as isize);
-            let sides = if k == 0 { vec![y] } else { vec![y - k, y + k] };
-            for side in sides {
-                let from = mirrored(side, height) * width;
-                add(out, *weight, &along[from..from + width]);
-            }
+        for (shift, weight) in shifts(half) {
+            let from = mirrored(y as isize + shift, height) * width;
+            add_scaled(out, weight, &along[from..from + width]);
         }
     });
     GreyImage::new(width, height, both)
 }
 
-fn add(out: &mut [f32], weight: f32, values: &[f32]) {
+/// 0, −1, 1, −2, 2 … with the weights of what is so far away.
+fn shifts(half: &[f32]) -> impl Iterator<Item = (isize, f32)> {
+    let both = |(k, weight): (isize, &f32)| {
+        let weight = *weight;
+        let sides = [-k, k].into_iter().skip(usize::from(k == 0));
+        sides.map(move |shift| (shift, weight))
+    };
+    (0..).zip(half).flat_map(both)
+}
+
+fn add_scaled(out: &mut [f32], weight: f32, values: &[f32]) {
     out.iter_mut()
         .zip(values)
         .for_each(|(out, value)| *out += weight * value);

@@ -1,5 +1,6 @@
 //! What the pixels of a subset give once for all: the matrices of the steps and of the covariance.
 
+use gelbench_mechanics::solve::vector::add_scaled;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 use super::noise::Noise;
@@ -27,7 +28,7 @@ pub struct Matrices {
 }
 
 /// Sums over the pixels of the smoothed gradient ĝ, the gradient g and the grey value I without its mean.
-struct Sums {
+struct PatternSums {
     /// Σ φₖ times ĝx, ĝy, gx, gy, and these times I.
     with_functions: [[f64; 8]; MOST_FUNCTIONS],
     /// Σ φₖ φₗ times ĝx gx, ĝx gy, ĝy gx, ĝy gy, ĝx ĝx, ĝx ĝy, ĝy ĝy and 1, for l ≤ k.
@@ -38,7 +39,7 @@ struct Sums {
 
 const MOST_FUNCTIONS: usize = DEGREES.len();
 
-impl Sums {
+impl PatternSums {
     fn new(pixels: &[Pixel], mean: f64, half: f64, count: usize) -> Self {
         let scale = 1.0 / half;
         let mut sums = Self {
@@ -56,9 +57,9 @@ impl Sums {
             let products = [p * r, p * s, q * r, q * s, p * p, p * q, q * q, 1.0];
             let mut pair = 0;
             for k in 0..count {
-                add(&mut sums.with_functions[k], phi[k], &factors);
+                add_scaled(&mut sums.with_functions[k], phi[k], &factors);
                 for other in &phi[..=k] {
-                    add(&mut sums.with_products[pair], phi[k] * other, &products);
+                    add_scaled(&mut sums.with_products[pair], phi[k] * other, &products);
                     pair += 1;
                 }
             }
@@ -82,13 +83,6 @@ impl Sums {
     }
 }
 
-#[inline]
-fn add(sums: &mut [f64; 8], factor: f64, values: &[f64; 8]) {
-    for (sum, value) in sums.iter_mut().zip(values) {
-        *sum += factor * value;
-    }
-}
-
 impl Matrices {
     pub fn new(
         pixels: &[Pixel],
@@ -101,7 +95,7 @@ impl Matrices {
         let values = || pixels.iter().map(|pixel| f64::from(pixel.value));
         let value = values().sum::<f64>();
         let mean = value / number;
-        let sums = Sums::new(pixels, mean, half, count);
+        let sums = PatternSums::new(pixels, mean, half, count);
         if sums.variation <= 0.0 {
             return None;
         }

@@ -28,6 +28,7 @@ pub fn moved(x: &[f64], step: f64, direction: &[f64]) -> Vec<f64> {
 }
 
 /// sum ← sum + factor · x.
+#[inline]
 pub fn add_scaled(sum: &mut [f64], factor: f64, x: &[f64]) {
     for (sum, x) in sum.iter_mut().zip(x) {
         *sum += factor * x;

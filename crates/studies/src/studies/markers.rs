@@ -147,8 +147,8 @@ impl MarkerStudy {
         let table = request.forces.as_deref();
         let force_warnings = request.conditions.take_forces(table, &field.series)?;
         field.warnings.extend(force_warnings);
-        let made = mesh(&request, &field)?;
-        let (mut mesh, mut warnings) = (made.mesh, made.warnings);
+        let specimen_mesh = mesh(&request, &field)?;
+        let (mut mesh, mut warnings) = (specimen_mesh.mesh, specimen_mesh.warnings);
         let edges = request.conditions.edges.iter();
         name_parts(&mut mesh, edges.map(|(name, _)| name.as_str()));
         area::name(&mut mesh, &request.conditions.areas)?;
@@ -178,18 +178,18 @@ impl MarkerStudy {
             regions,
             thickness: request.thickness,
             mesh,
-            cell_size: made.cell_size,
-            mesh_origin: made.origin,
+            cell_size: specimen_mesh.cell_size,
+            mesh_origin: specimen_mesh.origin,
             coarse,
             series: placed.series,
             understood: field.understood,
             conditions,
             regressed,
             warnings: [field.warnings, warnings].concat(),
-            doubts: of_reading(made.doubts, thickness),
+            doubts: of_reading(specimen_mesh.doubts, thickness),
             mistake: None,
             mistaken_images: None,
-            unknown_gap: made.unknown_gap,
+            unknown_gap: specimen_mesh.unknown_gap,
             edge_accuracy: 0.0,
         };
         let Some(images) = images else {

@@ -51,7 +51,7 @@ pub fn load(
 
 /// A motion that was read, ready to be computed.
 pub fn ready(kind: &Kind, name: String, text: &str, loaded: Loaded<MovingSheet>) -> PreparedStudy {
-    let about = loaded.made.describe();
+    let about = loaded.content.describe();
     let stem = file_stem(&name);
     let read = loaded.map(|mut sheet| -> Computation {
         sheet.specimen.name = stem;

@@ -75,7 +75,7 @@ pub fn load_on(
 
 /// A specimen or a plate that was read, ready to be computed.
 pub fn ready(kind: &Kind, name: String, text: &str, loaded: Loaded<Specimen>) -> PreparedStudy {
-    let (about, progress_steps) = (loaded.made.describe(), loaded.made.progress_steps());
+    let (about, progress_steps) = (loaded.content.describe(), loaded.content.progress_steps());
     let stem = file_stem(&name);
     let read = loaded.map(|mut specimen| -> Computation {
         specimen.name = stem;

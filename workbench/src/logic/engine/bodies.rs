@@ -84,7 +84,7 @@ fn specimen(scene: &Scene) -> Result<Specimen, Error> {
         angle: 0.0,
     };
     let text = scene.study_of(ANY_CARD, grip);
-    Ok(kinds::read_sheet(file, &text, Budget::USUAL)?.made)
+    Ok(kinds::read_sheet(file, &text, Budget::USUAL)?.content)
 }
 
 fn meshes_of(Specimen { outline, .. }: &Specimen) -> [Mesh; 2] {

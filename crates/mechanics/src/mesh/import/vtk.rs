@@ -3,7 +3,9 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
-use vtkio::model::{Attribute, DataSet, IOBuffer, Piece, UnstructuredGridPiece, Vtk};
+use vtkio::model::{
+    Attribute, DataSet, IOBuffer, Piece, UnstructuredGridPiece, VertexNumbers, Vtk,
+};
 
 use super::raw::{Raw, read_bytes};
 use super::unreadable::Unreadable;
@@ -50,7 +52,7 @@ fn legacy(bytes: &[u8]) -> Result<UnstructuredGrid, Unreadable> {
         return Err("is not an unstructured grid".into());
     };
     match pieces.into_iter().next() {
-        Some(Piece::Inline(piece)) => of_piece(*piece),
+        Some(Piece::Inline(piece)) => of_piece(&piece),
         _ => Err("refers to other files; save it as one".into()),
     }
 }
@@ -88,16 +90,12 @@ fn check_legacy(bytes: &[u8]) -> Result<(), Unreadable> {
     Ok(())
 }
 
-fn of_piece(piece: UnstructuredGridPiece) -> Result<UnstructuredGrid, Unreadable> {
+fn of_piece(piece: &UnstructuredGridPiece) -> Result<UnstructuredGrid, Unreadable> {
     let points = numbers(&piece.points).ok_or("has points that are not numbers")?;
     let kinds = piece.cells.types.iter().map(|kind| *kind as u8);
-    let vertices = piece.cells.cell_verts;
-    // Positions of cells that contradict each other panic.
-    let (_, vertices) =
-        catch_unwind(AssertUnwindSafe(|| vertices.into_legacy())).map_err(|_| CUT_OFF)?;
     Ok(UnstructuredGrid {
         points,
-        cells: kinds.zip(cells(&vertices)?).collect(),
+        cells: kinds.zip(cells(&piece.cells.cell_verts)?).collect(),
         point_arrays: arrays(&piece.data.point),
         cell_arrays: arrays(&piece.data.cell),
     })
@@ -120,13 +118,33 @@ fn numbers(buffer: &IOBuffer) -> Option<Vec<f64>> {
     buffer.cast_into::<f64>()
 }
 
-/// The nodes of each cell, from their number and themselves, cell by cell.
-fn cells(mut rest: &[u32]) -> Result<Vec<Vec<u64>>, Unreadable> {
+/// The nodes of each cell.
+fn cells(vertices: &VertexNumbers) -> Result<Vec<Vec<u64>>, Unreadable> {
     let mut cells = Vec::new();
-    while let Some((count, more)) = rest.split_first() {
-        let (nodes, others) = more.split_at_checked(*count as usize).ok_or(CUT_OFF)?;
-        cells.push(nodes.iter().map(|node| u64::from(*node)).collect());
-        rest = others;
+    match vertices {
+        VertexNumbers::XML {
+            connectivity,
+            offsets,
+        } => {
+            let mut start = 0;
+            for end in offsets {
+                let nodes = usize::try_from(*end)
+                    .ok()
+                    .and_then(|end| connectivity.get(start..end));
+                let nodes = nodes.ok_or(CUT_OFF)?;
+                cells.push(nodes.to_vec());
+                start = *end as usize;
+            }
+        }
+        VertexNumbers::Legacy { vertices, .. } => {
+            let mut rest = &vertices[..];
+            while let Some((count, more)) = rest.split_first() {
+                let count = *count as usize;
+                let nodes = more.get(..count).ok_or(CUT_OFF)?;
+                cells.push(nodes.iter().map(|node| u64::from(*node)).collect());
+                rest = &more[count..];
+            }
+        }
     }
     Ok(cells)
 }

@@ -11,7 +11,7 @@ fn parse(text: &str) -> Result<Loaded<Specimen>, Error> {
 }
 
 fn plate(text: &str) -> Specimen {
-    parse(text).unwrap().made
+    parse(text).unwrap().content
 }
 
 fn grids(text: &str) -> PlateGrids {
@@ -42,7 +42,7 @@ fn an_empty_study_is_the_default_one() {
     assert_eq!(correction.grading, 2.0);
     let gauss = grids("[corrector]\nscheme = \"gauss\"\n");
     assert_eq!(gauss.correction.grading, 1.5);
-    assert_eq!(empty.tolerances, full.made.tolerances);
+    assert_eq!(empty.tolerances, full.content.tolerances);
     assert!(full.warnings.is_empty() && full.output == crate::studies::OutputSettings::default());
 }
 
@@ -207,7 +207,7 @@ fn only_a_material_that_softens_is_unloaded() {
     );
     let direct = "[corrector]\nmethod = \"direct\"\n";
     let study = softening(&format!("{history}{direct}")).unwrap();
-    assert_eq!(study.made.factors, [0.3, 0.6, 0.2, 0.6]);
+    assert_eq!(study.content.factors, [0.3, 0.6, 0.2, 0.6]);
     let refused = |text: &str, words: &[&str]| {
         let fault = softening(text).map(|_| ()).unwrap_err().to_string();
         assert!(words.iter().all(|word| fault.contains(word)), "{fault}");
