@@ -231,12 +231,24 @@ fn corrected_within(
     free: &[&str],
     (images, card): (Vec<ImageFile>, &str),
 ) -> (MarkerStudy, FieldEstimate) {
+    let request = request(folder, edge, free, (images, card));
+    let mut study = MarkerStudy::prepare(request, &|_| ()).unwrap();
+    let estimate = study.estimate(&|_| ()).unwrap().remove(0);
+    (study, estimate)
+}
+
+fn request(
+    folder: &Path,
+    edge: PathBuf,
+    free: &[&str],
+    (images, card): (Vec<ImageFile>, &str),
+) -> Request {
     let grips = ["left", "right"].map(|name| (name, EdgeCondition::Rigid));
     let free = free.iter().map(|name| (*name, EdgeCondition::Free));
     let edges = grips.into_iter().chain(free);
     let edges = edges.map(|(name, condition)| (name.to_owned(), condition));
     std::fs::write(folder.join("card.toml"), card).unwrap();
-    let request = Request {
+    Request {
         files: Vec::new(),
         reading: ReadSettings {
             unit: Some(1.0 / PIXELS),
@@ -258,10 +270,7 @@ fn corrected_within(
         },
         forces: None,
         budget: Budget::USUAL,
-    };
-    let mut study = MarkerStudy::prepare(request, &|_| ()).unwrap();
-    let estimate = study.estimate(&|_| ()).unwrap().remove(0);
-    (study, estimate)
+    }
 }
 
 /// The images of a truth at rest and pulled.
@@ -370,6 +379,31 @@ fn an_edge_that_is_traced_to_a_fifth_of_a_pixel_refutes_no_law() {
         assert!(low < truth.force && truth.force < high, "{farther}");
         assert!(high - low < 0.03 * truth.force);
     }
+}
+
+/// Such as the outline of another scale, or with exchanged columns: what it holds shows no specimen, and where it does the law may hold.
+#[test]
+fn an_outline_that_reaches_beyond_the_images_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let truth = Truth::pulled(20.0);
+    let images = pair(&truth, &*speckle(1), 0, 0.02);
+    let edge = outline(folder.path(), 0.0);
+    let text = std::fs::read_to_string(&edge).unwrap();
+    let exchanged = text.lines().skip(1).map(|line| {
+        let [x, y, number] = line.split(',').collect::<Vec<_>>()[..] else {
+            unreachable!()
+        };
+        format!("{y},{x},{number}\n")
+    });
+    let exchanged: String = exchanged.collect();
+    std::fs::write(&edge, format!("x [mm],y [mm],line\n{exchanged}")).unwrap();
+    let request = request(folder.path(), edge, &[], (images, NEO_HOOKE));
+    let fault = MarkerStudy::prepare(request, &|_| ()).unwrap_err();
+    let message = fault.to_string();
+    assert!(
+        message.contains("beyond the images, which show 171.750 × 51.750 mm"),
+        "{message}"
+    );
 }
 
 /// Tags that move by more than half of their distance are matched with others; the stretch of the tags themselves shows it.

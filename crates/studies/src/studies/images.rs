@@ -14,6 +14,7 @@ use crate::images::{
     GreyImage, ImageFile, Region, Settings, Tracked, Tracker, is_image_path, list, series,
 };
 use crate::markers::{Frame, MarkerFiles, MarkerSeries, Subset, Understood, read_lines};
+use crate::units::decimals;
 
 mod written;
 
@@ -87,6 +88,9 @@ fn mean_strains(points: &[Option<Tracked>]) -> Option<[f64; 2]> {
     };
     (!followed.is_empty()).then(|| [mean(0), mean(1)])
 }
+
+/// How far an outline may reach beyond the images, over their longer side.
+const BEYOND: f64 = 0.02;
 
 /// The layout of markers that were followed in images.
 pub const IMAGES: &str = "images";
@@ -189,8 +193,28 @@ impl ImageRequest<'_> {
         for position in lines.iter_mut().flatten() {
             *position = [position[0] / pixel, up - position[1] / pixel];
         }
+        if let Some(message) = beyond(&lines, size, pixel) {
+            let message = format!("{}: {message}", outline.display());
+            let hint = "exchange its columns if they are y and x, check --unit, and let it end where the images end";
+            return Err(Error::input(message, hint));
+        }
         Region::of_lines(&lines, size)
     }
+}
+
+/// How far lines in pixels reach beyond images of a size, in words, where that is more than a hand errs.
+fn beyond(lines: &[Vec<[f64; 2]>], size: [usize; 2], pixel: f64) -> Option<String> {
+    let last = size.map(|length| (length - 1) as f64);
+    let along =
+        |position: &[f64; 2]| [0, 1].map(|axis| (position[axis] - last[axis]).max(-position[axis]));
+    let far = lines.iter().flatten().flat_map(along).fold(0.0, f64::max);
+    let [width, height, far_in_mm] =
+        [last[0], last[1], far].map(|length| decimals(length * pixel, 3));
+    (far > BEYOND * last[0].max(last[1])).then(|| {
+        format!(
+            "the outline reaches {far_in_mm} mm beyond the images, which show {width} × {height} mm"
+        )
+    })
 }
 
 /// The first image, and the later ones with the numbers of their frames.
