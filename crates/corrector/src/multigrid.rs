@@ -11,7 +11,7 @@
 //! | restriction | the transpose of the prolongation |
 //! | prolongation | linear between the coarser grid's nodes, whatever their number |
 //! | coarser operators | discretised anew on the coarser grid, not by products of matrices |
-//! | coarsest grid | Cholesky factor within the band |
+//! | coarsest grid | sparse Cholesky factor |
 //!
 //! All sums run in an order that does not depend on the number of threads.
 
@@ -29,7 +29,7 @@ mod tridiagonal;
 mod vector;
 
 pub use assembled_line::CellStiffness;
-pub use cycle::{Multigrid, NotPositiveDefinite};
+pub use cycle::Multigrid;
 pub use stencil::Stencil;
 pub use transfer::Interpolation;
 pub use vector::{Lines, Vector};

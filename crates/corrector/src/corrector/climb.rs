@@ -14,7 +14,7 @@
 use super::DifferenceScheme;
 use crate::error::{Error, SolveFault};
 use crate::material::softened_law::check_memory;
-use crate::multigrid::{Multigrid, NotPositiveDefinite};
+use crate::multigrid::Multigrid;
 use crate::problem::ClampedPlate;
 
 mod ascent;
@@ -259,7 +259,7 @@ impl<'a> Climb<'a> {
             }
         }
         let inverted = self.multigrid.factorise_coarsest();
-        inverted.map_err(|NotPositiveDefinite| SolveFault::NotPositiveDefinite)
+        inverted.map_err(|fault| fault.or(SolveFault::NotPositiveDefinite))
     }
 
     /// Without a factor of the coarsest operator that was assembled last, no iteration is possible.

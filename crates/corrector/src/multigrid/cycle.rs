@@ -5,11 +5,7 @@ use super::stencil::{Stencil, Sweep};
 use super::strip::LineSmoother;
 use super::transfer::Transfer;
 use super::vector::{Lines, Vector};
-
-/// An operator that is not positive definite.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("the operator of the coarsest grid is not positive definite")]
-pub struct NotPositiveDefinite;
+use crate::solve::FactorFault;
 
 /// One grid with its operator and the vectors of a cycle.
 #[derive(Debug)]
@@ -24,7 +20,6 @@ struct Level {
 }
 
 /// Grids from coarse to fine, whose V-cycle is a symmetric approximate inverse.
-#[derive(Debug)]
 pub struct Multigrid {
     levels: Vec<Level>,
     coarsest: Option<Factor>,
@@ -65,13 +60,11 @@ impl Multigrid {
     /// Factorises the operator of the coarsest grid, which has been written.
     ///
     /// # Errors
-    /// [`NotPositiveDefinite`] when it has none.
-    pub fn factorise_coarsest(&mut self) -> Result<(), NotPositiveDefinite> {
-        self.coarsest = Factor::of(&self.levels[0].stencil);
-        self.coarsest
-            .as_ref()
-            .map(|_| ())
-            .ok_or(NotPositiveDefinite)
+    /// [`FactorFault`] when it has none.
+    pub fn factorise_coarsest(&mut self) -> Result<(), FactorFault> {
+        self.coarsest = None;
+        self.coarsest = Some(Factor::of(&self.levels[0].stencil)?);
+        Ok(())
     }
 
     /// Whether the coarsest operator has a factor: without it there is no cycle.
