@@ -90,7 +90,6 @@ pub struct ClimbSolution {
 }
 
 /// A plate's grids, ready to correct at any stretch.
-#[derive(Debug)]
 pub struct Climb<'a> {
     problem: &'a ClampedPlate,
     scheme: DifferenceScheme,

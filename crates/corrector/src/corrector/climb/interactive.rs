@@ -69,7 +69,6 @@ impl ClimbSolution {
 }
 
 /// A plate moved by hand: its grips are moved, and the corrected field follows.
-#[derive(Debug)]
 pub struct Interactive<'a> {
     climb: Climb<'a>,
     grips: Grips,
