@@ -28,6 +28,7 @@ mod measured_fields;
 mod mesh_faults;
 mod messages;
 mod mistaken_fields;
+mod models_of_a_plate;
 mod motions;
 mod mounted_sheets;
 mod multigrid;

@@ -7,6 +7,9 @@ use tempfile::TempDir;
 
 use crate::common::{SMALL, gelbench, one_line, root};
 
+mod forces;
+mod specimens;
+
 /// What a command that fails prints, without line breaks.
 fn output_text(folder: &Path, arguments: &[&str], code: i32) -> String {
     let done = gelbench(folder, arguments).code(code);
@@ -223,92 +226,6 @@ fn units_of_meshes_are_told_by_their_names() {
     assert!(!message.contains("specimen.file_unit:"), "{message}");
 }
 
-/// The frame 2 of the measured plate.
-fn one_frame(folder: &Path) {
-    let text = example("measured_plate.csv");
-    let rows = text.lines().filter(|line| !line.starts_with("1,"));
-    fs::write(folder.join("one.csv"), rows.collect::<Vec<_>>().join("\n")).unwrap();
-}
-
-#[test]
-fn a_force_with_the_wrong_sign_is_told_before_anything_is_computed() {
-    let folder = TempDir::new().unwrap();
-    one_frame(folder.path());
-    let with = |force: &str| {
-        let options = [
-            "correct",
-            "one.csv",
-            "--material",
-            "pva-10",
-            "--thickness",
-            "2 mm",
-            "--rigid",
-            "left,right",
-            "--force",
-        ];
-        output_text(folder.path(), &[&options[..], &[force]].concat(), 2)
-    };
-    contains(
-        &with("left x 12.9 N"),
-        &[
-            "force on `left` is 12.9 N along x",
-            "towards -x",
-            "write -12.9 N",
-        ],
-    );
-    contains(&with("right x -12.9 N"), &["towards +x", "write 12.9 N"]);
-}
-
-#[test]
-fn a_force_among_several_frames_is_asked_for_its_frame() {
-    let options = [
-        "correct",
-        "examples/measured_plate.csv",
-        "--material",
-        "pva-10",
-        "--thickness",
-        "2 mm",
-        "--force",
-        "right x 12.9 N",
-    ];
-    let message = output_text(root(), &options, 2);
-    contains(
-        &message,
-        &[
-            "there are 2 frames",
-            "`frame = 2` under [[force]]",
-            "or correct one frame alone",
-        ],
-    );
-}
-
-#[test]
-fn misspelt_groups_are_told_at_their_place() {
-    let strip = example("strip_with_hole.toml").replacen("\"right\"", "\"rihgt\"", 1);
-    checked(
-        &strip,
-        &["support[2].group", "a.toml:42:9", "did you mean `right`?"],
-    );
-}
-
-/// The names of a shape's groups do not depend on measures that are still at fault.
-#[test]
-fn misspelt_groups_are_told_beside_misspelt_measures() {
-    let strip = example("strip_with_hole.toml").replace("\nlength", "\nlenght");
-    let strip = strip.replace("\"left\"", "\"lft\"");
-    checked(
-        &strip.replace("\"right\"", "\"rihgt\""),
-        &[
-            "specimen.lenght",
-            "the specimen has no group `lft`",
-            "did you mean `left`?",
-            "support[2].group",
-            "path.measured_group",
-            "did you mean `right`?",
-        ],
-    );
-}
-
 #[test]
 fn a_missing_key_of_a_list_is_added_as_toml_writes_it() {
     let strip = example("strip_with_hole.toml").replacen("\ngroup", "\n# group", 1);
@@ -347,32 +264,6 @@ fn advice_on_cells_is_taken_by_the_next_check() {
         .unwrap();
         gelbench(folder.path(), &["check", "a.toml"]).code(0);
     }
-}
-
-#[test]
-fn measures_that_do_not_fit_are_told_at_their_key_with_what_would() {
-    let strip = example("strip_with_hole.toml");
-    let notched = |depth: &str, length: &str| {
-        let notches =
-            format!("\"notched-strip\"\nnotch_depth = \"{depth}\"\nnotch_length = \"{length}\"");
-        strip.replace("\"strip-with-hole\"", &notches)
-    };
-    checked(
-        &notched("20 mm", "60 mm"),
-        &["specimen.notch_depth", "less than \"13.5 mm\""],
-    );
-    checked(
-        &notched("6 mm", "10 mm"),
-        &["specimen.notch_depth", "less than \"4.75 mm\""],
-    );
-    checked(
-        &strip.replace("12 mm", "28 mm"),
-        &["specimen.hole_diameter", "less than \"27 mm\""],
-    );
-    checked(
-        &example("dog_bone.toml").replace("\"4 mm\"", "\"14 mm\""),
-        &["specimen.narrow_width", "less than \"12.5 mm\""],
-    );
 }
 
 #[test]

@@ -59,3 +59,15 @@ impl<'a> Archive<'a> {
         }
     }
 }
+
+/// An archive of some files.
+#[cfg(test)]
+pub(super) fn stored(files: &[(&str, &str)]) -> Vec<u8> {
+    let mut archive = zip::ZipWriter::new(Cursor::new(Vec::new()));
+    for (name, text) in files {
+        let options = zip::write::SimpleFileOptions::default();
+        archive.start_file(*name, options).unwrap();
+        std::io::Write::write_all(&mut archive, text.as_bytes()).unwrap();
+    }
+    archive.finish().unwrap().into_inner()
+}

@@ -83,7 +83,7 @@ fn of_archive(bytes: &[u8], part: Option<&str>) -> Result<Vec<TableText>, Unconv
     let names = archive.names();
     let are_arrays = !names.is_empty() && names.iter().all(|name| name.ends_with(".npy"));
     if names.iter().any(|name| name.ends_with("workbook.xml")) {
-        spreadsheet::tables(archive, part)
+        spreadsheet::tables(bytes, part)
     } else if are_arrays {
         arrays::of_npz(archive, part)
     } else {

@@ -18,7 +18,8 @@ fn unknown(lines: Lines, line: usize, node: usize) -> usize {
 /// The lower triangle of the operator by columns: rows and values.
 fn columns(stencil: &Stencil) -> Vec<Vec<(usize, f64)>> {
     let lines = stencil.lines();
-    let nodes = (1..lines.count - 1).flat_map(|line| (0..lines.nodes).map(move |node| [line, node]));
+    let nodes =
+        (1..lines.count - 1).flat_map(|line| (0..lines.nodes).map(move |node| [line, node]));
     let column = |[line, node]: [usize; 2], axis: usize| {
         let mut column = Vec::with_capacity(10);
         // Ascending by the numbers of unknowns.
