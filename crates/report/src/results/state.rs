@@ -112,6 +112,13 @@ impl LocalState {
         principal([s11, s12, s22])
     }
 
+    /// The unit vector of the smaller principal Cauchy stress in the plane.
+    pub fn smaller_direction(&self) -> [f64; 2] {
+        let [s11, s22, _, s12] = self.cauchy;
+        let (sine, cosine) = (0.5 * (-s12).atan2(0.5 * (s22 - s11))).sin_cos();
+        [cosine, sine]
+    }
+
     /// The largest principal Green–Lagrange strain in the plane.
     pub fn largest_principal_strain(&self) -> f64 {
         let [e11, e22, _, e12] = self.green_lagrange;

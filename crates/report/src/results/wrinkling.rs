@@ -3,10 +3,13 @@
 mod critical;
 mod regions;
 
+use nalgebra::Matrix4;
+
 use super::BESIDE_CORNERS;
 use super::sheet::Sheet;
-use super::state::{LocalState, cell_states};
-use crate::material::PlaneState;
+use super::state::{LocalState, cell_gradients, cell_states};
+use crate::material::sheet::{Kinematics, PlaneTensor};
+use crate::material::{HyperelasticLaw, PlaneState};
 use crate::mesh::Mesh;
 use crate::units::number;
 use critical::Bending;
@@ -61,7 +64,7 @@ impl Wrinkling {
         let compressed = stresses.iter().enumerate();
         let compressed = compressed.map(|(cell, [_, smaller])| *smaller < limits[number(cell)]);
         let compressed: Vec<bool> = compressed.collect();
-        let bending: Vec<Bending> = laws.all().iter().map(|law| Bending::new(&**law)).collect();
+        let gradients = cell_gradients(mesh, displacement);
         let parts = Deformed::new(mesh, displacement, states).parts(&compressed);
         let mut worst = [0.0, f64::INFINITY];
         let mut exceeded = vec![false; states.len()];
@@ -69,8 +72,9 @@ impl Wrinkling {
             let Some(part) = part else { continue };
             let [_, smaller] = stresses[cell];
             let thickness = sheet.thickness * states[cell].stretches[2];
-            let critical = bending[number(cell)].critical_stress(part, thickness);
-            let critical = critical.max(0.0);
+            let waves = direction_at_rest(&gradients[cell], states[cell].smaller_direction());
+            let bending = Bending::new(&tangent_at_rest(laws.of(cell), &states[cell]), waves);
+            let critical = bending.critical_stress(part, thickness).max(0.0);
             exceeded[cell] = -smaller > CERTAIN * critical;
             if -smaller * worst[1] > worst[0] * critical {
                 worst = [-smaller, critical];
@@ -83,6 +87,22 @@ impl Wrinkling {
             worst,
         }
     }
+}
+
+/// ∂P/∂F in MPa at a millionth of the strain of a state: at rest, but with fibres in the tension or compression that they have.
+fn tangent_at_rest(law: &dyn HyperelasticLaw, state: &LocalState) -> Matrix4<f64> {
+    let [e11, e22, _, e12] = state.green_lagrange.map(|strain| 1e-6 * strain);
+    let kinematics = Kinematics::new(&PlaneTensor::new(e11, e12, e12, e22));
+    law.response(&kinematics.unwrap_or(Kinematics::rest()))
+        .tangent
+}
+
+/// The direction Fᵀ k at rest, of length one, of waves along k in the deformed sheet.
+fn direction_at_rest(gradient: &[f64; 4], [x, y]: [f64; 2]) -> [f64; 2] {
+    let [h11, h12, h21, h22] = gradient;
+    let (x, y) = ((1.0 + h11) * x + h21 * y, h12 * x + (1.0 + h22) * y);
+    let length = x.hypot(y);
+    [x / length, y / length]
 }
 
 /// The share of some cells in the reference area in %.

@@ -2,13 +2,15 @@
 
 use std::f64::consts::PI;
 
-use crate::material::HyperelasticLaw;
+use nalgebra::{Matrix4, Vector4};
 
-/// The bending of a sheet that is as stiff as at rest.
+/// The bending of a sheet that is as stiff as at rest, in waves along one direction.
 #[derive(Clone, Copy)]
 pub struct Bending {
-    modulus: f64,
-    poissons_ratio: f64,
+    /// C_kkkk in MPa along the direction k: E/(1 − ν²) of an isotropic sheet.
+    stiffness: f64,
+    /// C_kqkq in MPa with the direction q across it: the shear modulus.
+    shear: f64,
 }
 
 /// A part of a sheet under compression.
@@ -25,13 +27,13 @@ pub struct Part {
 }
 
 impl Bending {
-    /// Of a law, with its moduli at rest.
-    pub fn new(law: &dyn HyperelasticLaw) -> Self {
-        let modulus = law.youngs_modulus();
-        let poissons_ratio = (0.5 * modulus / law.shear_modulus() - 1.0).clamp(0.0, 0.5);
+    /// Of the tangent ∂P/∂F at rest, with a unit vector of the sheet at rest along which the waves run.
+    pub fn new(tangent: &Matrix4<f64>, [x, y]: [f64; 2]) -> Self {
+        let along = Vector4::new(x * x, x * y, y * x, y * y);
+        let sheared = Vector4::new(-x * y, x * x, -y * y, x * y);
         Self {
-            modulus,
-            poissons_ratio,
+            stiffness: along.dot(&(tangent * along)),
+            shear: sheared.dot(&(tangent * sheared)),
         }
     }
 
@@ -40,7 +42,7 @@ impl Bending {
     /// A deflection w = sin(q x) sin(k y) of a plate that its surroundings hold has the energy of bending and of the membrane
     ///
     /// ```text
-    /// B (q² + k²)² + T q² − N k² = 0,     B = E h³/(12 (1 − ν²)),     q = π/a,   k ≥ π/b
+    /// B (q² + k²)² + T q² − N k² = 0,     B = C_kkkk h³/12,     q = π/a,   k ≥ π/b
     /// N = min over k of [B (q² + k²)² + T q²]/k²,     least at k² = √(q⁴ + T q²/B)
     /// ```
     ///
@@ -54,8 +56,10 @@ impl Bending {
     /// part is a strut:
     ///
     /// ```text
-    /// N = min over k of B [k² + 6 (1 − ν)/(2 a)²] + T [π/(2 a)]²/k²,     N = B (π/b)²
+    /// N = min over k of B k² + C_kqkq h³/(2 a)² + T [π/(2 a)]²/k²,     N = B (π/b)²
     /// ```
+    ///
+    /// C is the tangent at rest: B = E h³/(12 (1 − ν²)) of an isotropic sheet, whose C_kqkq is the shear modulus μ.
     ///
     /// # References
     /// E. Cerda, L. Mahadevan, Phys. Rev. Lett. 90, 074302 (2003), doi:10.1103/PhysRevLett.90.074302 (wrinkles under tension);
@@ -67,8 +71,7 @@ impl Bending {
             free_ends,
             tension,
         } = part;
-        let bending =
-            self.modulus * thickness.powi(2) / (12.0 * (1.0 - self.poissons_ratio.powi(2)));
+        let bending = self.stiffness * thickness.powi(2) / 12.0;
         let (held, least) = ((PI / along).powi(2), (PI / across).powi(2));
         match free_ends {
             0 => {
@@ -77,10 +80,10 @@ impl Bending {
                 (bending * (held + number).powi(2) + tension * held) / number
             }
             1 => {
-                let twist = 6.0 * (1.0 - self.poissons_ratio) / (4.0 * along * along);
+                let twist = self.shear * (thickness / (2.0 * along)).powi(2);
                 let held = 0.25 * held * tension.max(0.0);
                 let number = (held / bending).sqrt().max(least);
-                bending * (number + twist) + held / number
+                bending * number + twist + held / number
             }
             _ => bending * least,
         }
@@ -90,11 +93,13 @@ impl Bending {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::material::NeoHooke;
+    use crate::material::sheet::Kinematics;
+    use crate::material::{HyperelasticLaw, NeoHooke};
 
     #[test]
     fn plates_struts_and_wrinkles_have_the_compression_of_textbooks() {
-        let bending = Bending::new(&NeoHooke { c10: 0.05 });
+        let law = NeoHooke { c10: 0.05 };
+        let bending = Bending::new(&law.response(&Kinematics::rest()).tangent, [0.6, 0.8]);
         // E h²/(12 (1 − ν²)) with E = 0.3 MPa and ν = ½.
         let (thickness, per) = (0.1_f64, 0.3 * 0.1 * 0.1 / 9.0);
         let critical = |along: f64, across: f64, free_ends, tension| {

@@ -2,7 +2,7 @@ use std::sync::{Arc, LazyLock};
 
 use super::*;
 use crate::finite_element::{Element, FiniteElements};
-use crate::material::{HyperelasticLaw, NeoHooke};
+use crate::material::{AnisotropicSheet, HolzapfelGasserOgden, HyperelasticLaw, NeoHooke};
 use crate::mesh::CellShape;
 use crate::problem::ClampedPlate;
 use gelbench_mechanics::solve::NewtonSettings;
@@ -151,4 +151,47 @@ fn a_clamped_sheet_wrinkles_at_a_hundredth_of_a_millimetre_and_not_at_two() {
         thin.contains("at 30 % stretch") && thin.contains("MPa are critical"),
         "{thin}"
     );
+}
+
+/// The same sheet with one family of fibres, compressed along them or across them.
+#[test]
+fn the_critical_compression_of_fibres_does_not_depend_on_how_the_sheet_lies() {
+    for across in [0.0, 90.0] {
+        let ratios = [0.0, 35.0, 90.0].map(|angle: f64| compression_of_fibres(angle, across));
+        let [first, ..] = ratios;
+        assert!(first > 0.0, "{ratios:?}");
+        for ratio in ratios {
+            assert!((ratio / first - 1.0).abs() < 1e-6, "{across}: {ratios:?}");
+        }
+    }
+}
+
+/// Compression by the critical one of a square that is compressed along an axis which is turned by an angle, with fibres at another angle to it.
+fn compression_of_fibres(angle: f64, fibre: f64) -> f64 {
+    let (sine, cosine) = angle.to_radians().sin_cos();
+    let (of_fibre, to_fibre) = (angle + fibre).to_radians().sin_cos();
+    let law = HolzapfelGasserOgden {
+        mu: 0.02,
+        k1: 0.05,
+        k2: 2.0,
+        kappa: 0.0,
+        fibres: vec![[1.0, 0.0]],
+    };
+    let fibres: Arc<dyn HyperelasticLaw> = Arc::new(AnisotropicSheet {
+        law,
+        axis: [to_fibre, of_fibre],
+    });
+    let turned = |[x, y]: [f64; 2]| [cosine * x - sine * y, sine * x + cosine * y];
+    let squeezed = |[x, y]: [f64; 2]| turned([-0.01 * x, 0.005 * y]);
+    let mut mesh = Mesh::plate([1.0, 1.0], [16, 16], CellShape::Quad9);
+    let u: Vec<f64> = mesh.nodes.iter().flat_map(|node| squeezed(*node)).collect();
+    mesh.nodes.iter_mut().for_each(|node| *node = turned(*node));
+    let sheet = Sheet {
+        laws: (&fibres).into(),
+        thickness: 0.02,
+        past: &[],
+        viscous: None,
+    };
+    let [compression, critical] = Wrinkling::new(sheet, &mesh, &u).worst;
+    compression / critical
 }
