@@ -55,6 +55,51 @@ pub fn polygon_area(line: &[[f64; 2]]) -> f64 {
     twice.sum::<f64>() / 2.0
 }
 
+/// The numbers of the points that are corners of their convex hull, counter-clockwise (Andrew's monotone chain).
+pub fn convex_hull(points: &[[f64; 2]]) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..points.len()).collect();
+    order.sort_by(|a, b| {
+        let [p, q] = [points[*a], points[*b]];
+        p[0].total_cmp(&q[0]).then(p[1].total_cmp(&q[1]))
+    });
+    let half = |order: &mut dyn Iterator<Item = usize>| {
+        let mut half: Vec<usize> = Vec::new();
+        for next in order {
+            while let [.., before, last] = half[..]
+                && polygon_area(&[points[before], points[last], points[next]]) <= 0.0
+            {
+                half.pop();
+            }
+            half.push(next);
+        }
+        half.pop();
+        half
+    };
+    let mut corners = half(&mut order.iter().copied());
+    corners.extend(half(&mut order.iter().rev().copied()));
+    corners
+}
+
+/// The least distance of two parallel lines that have all points between them: the smaller side of a rectangle, however it lies.
+pub fn least_width(points: &[[f64; 2]]) -> f64 {
+    let corners = convex_hull(points).into_iter().map(|corner| points[corner]);
+    let corners: Vec<[f64; 2]> = corners.collect();
+    let next = corners.iter().cycle().skip(1);
+    let least = corners.iter().zip(next).map(|(a, b)| {
+        let across = |point: &[f64; 2]| 2.0 * polygon_area(&[*a, *b, *point]) / distance(*a, *b);
+        corners.iter().map(across).fold(0.0, f64::max)
+    });
+    let least = least.fold(f64::INFINITY, f64::min);
+    let [low, high] = bounding_box(points.iter().copied());
+    let along_axes = (high[0] - low[0]).min(high[1] - low[1]);
+    // Of sides along the axes rounding makes no difference.
+    if least < along_axes * (1.0 - 1e-9) {
+        least
+    } else {
+        along_axes
+    }
+}
+
 /// The distance of two points.
 pub fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
     (b[0] - a[0]).hypot(b[1] - a[1])
@@ -63,4 +108,21 @@ pub fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
 /// The determinant of a 2 × 2 matrix, by rows.
 pub fn determinant(map: &[[f64; 2]; 2]) -> f64 {
     map[0][0] * map[1][1] - map[0][1] * map[1][0]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_least_width_does_not_depend_on_how_points_lie() {
+        for degrees in [0.0, 17.5, 45.0, 90.0, 200.0_f64] {
+            let (sine, cosine) = degrees.to_radians().sin_cos();
+            let turned = |x: f64, y: f64| [cosine * x - sine * y, sine * x + cosine * y];
+            let points = (0..=20).flat_map(|i| (0..=4).map(move |k| [i, k]));
+            let points = points.map(|[i, k]| turned(5.0 * f64::from(i), f64::from(k)));
+            let width = least_width(&points.collect::<Vec<_>>());
+            assert!((width - 4.0).abs() < 1e-12, "{degrees}: {width}");
+        }
+    }
 }

@@ -4,6 +4,7 @@
 use super::nodal_sheet::NodalSheet;
 use super::{Block, Deformed, LocalState, Table, or_dash};
 use crate::mesh::Mesh;
+use crate::mesh::geometry::least_width;
 use crate::problem::{GroupState, SheetLaws};
 use crate::units::number;
 
@@ -277,8 +278,7 @@ fn is_pressed<'a>(states: impl Iterator<Item = &'a LocalState>) -> bool {
 impl LoadedSheet<'_> {
     /// The sheet's smaller side in mm.
     fn side(&self) -> f64 {
-        let [low, high] = self.deformed.mesh.bounding_box();
-        (high[0] - low[0]).min(high[1] - low[1])
+        least_width(&self.deformed.mesh.nodes)
     }
 
     /// The distance from singular points in mm from which on values count, whatever the mesh.

@@ -331,12 +331,15 @@ fn either(values: &[f64], wanted: f64) -> Option<(usize, f64)> {
     passes(values, wanted).or_else(|| passes(values, -wanted).filter(|_| falls && wanted > 0.0))
 }
 
-/// Where values first pass one, as a row and the part of the step behind it.
+/// Where values first pass one, as a row and the part of the step behind it; up to what rounding of units leaves.
 fn passes(values: &[f64], wanted: f64) -> Option<(usize, f64)> {
+    const ROUNDING: f64 = 1e-9;
     let step = |row: usize| {
         let (from, to) = (values[row], values[row + 1]);
         let share = (wanted - from) / (to - from);
-        (0.0..=1.0).contains(&share).then_some((row, share))
+        (-ROUNDING..=1.0 + ROUNDING)
+            .contains(&share)
+            .then_some((row, share))
     };
     (0..values.len().saturating_sub(1)).find_map(step)
 }

@@ -81,25 +81,23 @@ fn bent(x: &[f64], y: &DVector<f64>, bend: f64) -> Option<Bent> {
 impl Beginning {
     /// The beginning of a loading branch.
     pub fn of(strains: &[f64], stresses: &[f64]) -> Self {
-        Self::search(strains, stresses).unwrap_or_else(|| Self::elsewhere(strains, stresses))
-    }
-
-    /// Where a stress that rises from nothing at the first row begins.
-    fn elsewhere(strains: &[f64], stresses: &[f64]) -> Self {
         /// Share of the strains up to which they begin at zero.
         const NEAR: f64 = 0.05;
         let largest = stresses.iter().fold(0.0, |most: f64, y| most.max(y.abs()));
-        match (strains, stresses) {
-            ([first, .., last], [stress, ..])
-                if stress.abs() <= NOTHING * largest
-                    && first.abs() > NEAR * (last - first).abs() =>
-            {
+        let is_unloaded = match Self::search(strains, stresses) {
+            Some(Self::Clean) => true,
+            Some(shown) => return shown,
+            None => stresses[0].abs() <= NOTHING * largest,
+        };
+        match strains {
+            [first, .., last] if is_unloaded && first.abs() > NEAR * (last - first).abs() => {
                 Self::Elsewhere(*first)
             }
             _ => Self::Clean,
         }
     }
 
+    /// The beginning by curves that are fitted to it, `Clean` where the first row has no stress within its noise; `None` where they tell nothing.
     fn search(strains: &[f64], stresses: &[f64]) -> Option<Self> {
         let (first, last) = (*strains.first()?, *strains.last()?);
         let direction = (last - first).signum();
@@ -167,7 +165,7 @@ impl Beginning {
         let error = (inverse(&columns.tr_mul(&columns), 1e-13)?[(0, 0)] * variance).sqrt();
         let (at_rest, slope) = (plain.coefficients[0], plain.coefficients[1]);
         if at_rest.abs() <= 4.0 * error + NOTHING {
-            return None;
+            return Some(Self::Clean);
         }
         let back = width * at_rest / slope;
         match at_rest > 0.0 {
@@ -298,9 +296,7 @@ mod tests {
                     .map(|x| x + 1.5 - f64::from(u8::from(scatter > 0.0)));
                 let from: Vec<f64> = from.collect();
                 let moved = Beginning::of(&from, &y);
-                if y[0].abs() <= NOTHING {
-                    assert_eq!(moved, Beginning::Elsewhere(from[0]), "{exponent} {scatter}");
-                }
+                assert_eq!(moved, Beginning::Elsewhere(from[0]), "{exponent} {scatter}");
             }
         }
     }

@@ -8,7 +8,7 @@
 
 use super::corners::{CORNER, corners};
 use super::polygon::{distance, turn_between};
-use crate::mesh::geometry::{distance as length, polygon_area};
+use crate::mesh::geometry::{convex_hull, distance as length};
 use crate::statistics::extremes;
 
 /// Sides reach along the specimen by this share of its extent at least; a corner that is cut off is no side.
@@ -94,7 +94,8 @@ impl Span {
 
 /// The edges of a line's convex hull in order, with what the line does between their ends.
 fn spans(line: &[[f64; 2]]) -> Vec<Span> {
-    let corners = hull(line);
+    let mut corners = convex_hull(line);
+    corners.sort_unstable();
     let count = line.len();
     let next = corners.iter().cycle().skip(1);
     let between = corners.iter().zip(next).map(|(from, to)| {
@@ -106,32 +107,6 @@ fn spans(line: &[[f64; 2]]) -> Vec<Span> {
         }
     });
     between.collect()
-}
-
-/// The numbers of the points of a line that are corners of its convex hull, in the line's order (Andrew's monotone chain).
-fn hull(line: &[[f64; 2]]) -> Vec<usize> {
-    let mut order: Vec<usize> = (0..line.len()).collect();
-    order.sort_by(|a, b| {
-        let [p, q] = [line[*a], line[*b]];
-        p[0].total_cmp(&q[0]).then(p[1].total_cmp(&q[1]))
-    });
-    let half = |order: &mut dyn Iterator<Item = usize>| {
-        let mut half: Vec<usize> = Vec::new();
-        for next in order {
-            while let [.., before, last] = half[..]
-                && polygon_area(&[line[before], line[last], line[next]]) <= 0.0
-            {
-                half.pop();
-            }
-            half.push(next);
-        }
-        half.pop();
-        half
-    };
-    let mut corners = half(&mut order.iter().copied());
-    corners.extend(half(&mut order.iter().rev().copied()));
-    corners.sort_unstable();
-    corners
 }
 
 /// Whether edges begin at a corner.
