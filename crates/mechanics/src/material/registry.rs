@@ -84,158 +84,135 @@ impl Law {
 /// The law that is a formula.
 const ENERGY: &str = "energy";
 
+/// A row of the table.
+const fn law(
+    name: &'static str,
+    formula: &'static str,
+    read: fn(&Parameters) -> Box<dyn HyperelasticLaw>,
+) -> Law {
+    Law {
+        name,
+        formula,
+        read,
+    }
+}
+
 /// Every law.
 pub const LAWS: &[Law] = &[
-    Law {
-        name: "neo-hooke",
-        formula: "Ψ = C₁₀ (I₁ − 3)",
-        read: NeoHooke::from_card,
-    },
-    Law {
-        name: "mooney-rivlin",
-        formula: "Ψ = C₁₀ (I₁ − 3) + C₀₁ (I₂ − 3)",
-        read: MooneyRivlin::from_card,
-    },
-    Law {
-        name: "mooney-rivlin-3",
-        formula: "Ψ = C₁₀ (I₁ − 3) + C₀₁ (I₂ − 3) + C₁₁ (I₁ − 3)(I₂ − 3)",
-        read: Polynomial::from_card_3,
-    },
-    Law {
-        name: "mooney-rivlin-5",
-        formula: "Ψ = C₁₀ (I₁ − 3) + C₀₁ (I₂ − 3) + C₂₀ (I₁ − 3)² + C₁₁ (I₁ − 3)(I₂ − 3) + C₀₂ (I₂ − 3)²",
-        read: Polynomial::from_card_5,
-    },
-    Law {
-        name: "yeoh",
-        formula: "Ψ = C₁₀ (I₁ − 3) + C₂₀ (I₁ − 3)² + C₃₀ (I₁ − 3)³",
-        read: Yeoh::from_card,
-    },
-    Law {
-        name: "ogden-1",
-        formula: OGDEN,
-        read: Ogden::from_card::<1>,
-    },
-    Law {
-        name: "ogden-2",
-        formula: OGDEN,
-        read: Ogden::from_card::<2>,
-    },
-    Law {
-        name: "ogden-3",
-        formula: OGDEN,
-        read: Ogden::from_card::<3>,
-    },
-    Law {
-        name: "ogden-4",
-        formula: OGDEN,
-        read: Ogden::from_card::<4>,
-    },
-    Law {
-        name: "gent",
-        formula: "Ψ = −½ μ Jₘ ln(1 − (I₁ − 3)/Jₘ)",
-        read: Gent::from_card,
-    },
-    Law {
-        name: "arruda-boyce",
-        formula: "Ψ = μ Σ Cᵢ λₘ^(2 − 2i) (I₁ⁱ − 3ⁱ), five terms",
-        read: ArrudaBoyce::from_card,
-    },
-    Law {
-        name: "fung-demiray",
-        formula: "Ψ = μ/(2 b) (e^(b (I₁ − 3)) − 1)",
-        read: FungDemiray::from_card,
-    },
-    Law {
-        name: "veronda-westmann",
-        formula: "Ψ = C (e^(β (I₁ − 3)) − 1) − ½ C β (I₂ − 3)",
-        read: VerondaWestmann::from_card,
-    },
-    Law {
-        name: ENERGY,
-        formula: "Ψ(I₁, I₂) or Ψ(C₁₁, C₁₂, C₂₂) as the card writes it",
-        read: energy::from_card,
-    },
-    Law {
-        name: MARLOW_EXPONENTIAL,
-        formula: "Ψ(I₁) from the tension curve A (e^(b ε) − 1)",
-        read: ExponentialCurve::from_card,
-    },
-    Law {
-        name: MARLOW_TABLE,
-        formula: "Ψ(I₁) from a measured tension curve",
-        read: TableCurve::from_card,
-    },
-    Law {
-        name: "holzapfel-gasser-ogden",
-        formula: "Ψ = μ/2 (I₁ − 3) + Σ k₁/(2 k₂) (e^(k₂ ⟨E⟩²) − 1), E = κ (I₁ − 3) + (1 − 3κ)(I₄ − 1)",
-        read: HolzapfelGasserOgden::from_card,
-    },
-    Law {
-        name: "fung",
-        formula: "Ψ = c/2 (e^Q − 1), Q = a₁ E₁₁² + a₂ E₂₂² + 2 a₃ E₁₁ E₂₂ + a₄ (2 E₁₂)²",
-        read: Fung::from_card,
-    },
-    Law {
-        name: "may-newman",
-        formula: "Ψ = μ/2 (I₁ − 3) + c₀ (e^(c₁ (I₁ − 3)² + c₂ (√I₄ − 1)⁴) − 1)",
-        read: MayNewman::from_card,
-    },
-    Law {
-        name: "lee-sacks",
-        formula: "Ψ = c₁₀/2 (I₁ − 3) + c₀/2 (δ e^(c₁ (I₁ − 3)²) + (1 − δ) e^(c₂ ⟨I₄ − 1⟩²) − 1)",
-        read: LeeSacks::from_card,
-    },
-    Law {
-        name: "holzapfel-ogden",
-        formula: "Ψ = a/(2b) (e^(b (I₁ − 3)) − 1) + Σ aᵢ/(2bᵢ) (e^(bᵢ ⟨I₄ᵢ − 1⟩²) − 1) + a_fs/(2b_fs) (e^(b_fs I₈²) − 1), i = f, s",
-        read: HolzapfelOgden::from_card,
-    },
-    Law {
-        name: "neo-hooke-simo-pister",
-        formula: "W = μ/2 (I₁ − 3 − 2 ln J) + Λ/2 ln² J, Λ = 2μν/(1 − 2ν)",
-        read: CompressibleNeoHooke::<true>::from_card,
-    },
-    Law {
-        name: "neo-hooke-ciarlet",
-        formula: "W = μ/2 (I₁ − 3 − 2 ln J) + Λ/4 (J² − 1 − 2 ln J), Λ = 2μν/(1 − 2ν)",
-        read: CompressibleNeoHooke::<false>::from_card,
-    },
-    Law {
-        name: "blatz-ko",
-        formula: "W = μ/2 f (I₁ − 3 + (J^(−2β) − 1)/β) + μ/2 (1 − f) (I₂/J² − 3 + (J^(2β) − 1)/β), β = ν/(1 − 2ν)",
-        read: OgdenHill::blatz_ko_from_card,
-    },
-    Law {
-        name: "ogden-hill-1",
-        formula: OGDEN_HILL,
-        read: OgdenHill::from_card::<1>,
-    },
-    Law {
-        name: "ogden-hill-2",
-        formula: OGDEN_HILL,
-        read: OgdenHill::from_card::<2>,
-    },
-    Law {
-        name: "ogden-hill-3",
-        formula: OGDEN_HILL,
-        read: OgdenHill::from_card::<3>,
-    },
-    Law {
-        name: "saint-venant-kirchhoff",
-        formula: "W = Λ/2 (tr E)² + μ E : E, E = (FᵀF − 1)/2, Λ = 2μν/(1 − 2ν)",
-        read: SaintVenantKirchhoff::from_card,
-    },
-    Law {
-        name: "linear-elastic",
-        formula: "W = Λ/2 (tr ε)² + μ ε : ε, ε = (H + Hᵀ)/2, Λ = 2μν/(1 − 2ν)",
-        read: LinearElastic::from_card,
-    },
-    Law {
-        name: SWELLING,
-        formula: "W/φ = G₀/(2φ₀) (λ₁² + λ₂² + λ₃² − 3 − B ln J₀) + RT/V₁ ((Q − 1) ln(1 − 1/Q) + χ (1 − 1/Q) − Q ln a)",
-        read: Network::from_card,
-    },
+    law("neo-hooke", "Ψ = C₁₀ (I₁ − 3)", NeoHooke::from_card),
+    law(
+        "mooney-rivlin",
+        "Ψ = C₁₀ (I₁ − 3) + C₀₁ (I₂ − 3)",
+        MooneyRivlin::from_card,
+    ),
+    law(
+        "mooney-rivlin-3",
+        "Ψ = C₁₀ (I₁ − 3) + C₀₁ (I₂ − 3) + C₁₁ (I₁ − 3)(I₂ − 3)",
+        Polynomial::from_card_3,
+    ),
+    law(
+        "mooney-rivlin-5",
+        "Ψ = C₁₀ (I₁ − 3) + C₀₁ (I₂ − 3) + C₂₀ (I₁ − 3)² + C₁₁ (I₁ − 3)(I₂ − 3) + C₀₂ (I₂ − 3)²",
+        Polynomial::from_card_5,
+    ),
+    law(
+        "yeoh",
+        "Ψ = C₁₀ (I₁ − 3) + C₂₀ (I₁ − 3)² + C₃₀ (I₁ − 3)³",
+        Yeoh::from_card,
+    ),
+    law("ogden-1", OGDEN, Ogden::from_card::<1>),
+    law("ogden-2", OGDEN, Ogden::from_card::<2>),
+    law("ogden-3", OGDEN, Ogden::from_card::<3>),
+    law("ogden-4", OGDEN, Ogden::from_card::<4>),
+    law("gent", "Ψ = −½ μ Jₘ ln(1 − (I₁ − 3)/Jₘ)", Gent::from_card),
+    law(
+        "arruda-boyce",
+        "Ψ = μ Σ Cᵢ λₘ^(2 − 2i) (I₁ⁱ − 3ⁱ), five terms",
+        ArrudaBoyce::from_card,
+    ),
+    law(
+        "fung-demiray",
+        "Ψ = μ/(2 b) (e^(b (I₁ − 3)) − 1)",
+        FungDemiray::from_card,
+    ),
+    law(
+        "veronda-westmann",
+        "Ψ = C (e^(β (I₁ − 3)) − 1) − ½ C β (I₂ − 3)",
+        VerondaWestmann::from_card,
+    ),
+    law(
+        ENERGY,
+        "Ψ(I₁, I₂) or Ψ(C₁₁, C₁₂, C₂₂) as the card writes it",
+        energy::from_card,
+    ),
+    law(
+        MARLOW_EXPONENTIAL,
+        "Ψ(I₁) from the tension curve A (e^(b ε) − 1)",
+        ExponentialCurve::from_card,
+    ),
+    law(
+        MARLOW_TABLE,
+        "Ψ(I₁) from a measured tension curve",
+        TableCurve::from_card,
+    ),
+    law(
+        "holzapfel-gasser-ogden",
+        "Ψ = μ/2 (I₁ − 3) + Σ k₁/(2 k₂) (e^(k₂ ⟨E⟩²) − 1), E = κ (I₁ − 3) + (1 − 3κ)(I₄ − 1)",
+        HolzapfelGasserOgden::from_card,
+    ),
+    law(
+        "fung",
+        "Ψ = c/2 (e^Q − 1), Q = a₁ E₁₁² + a₂ E₂₂² + 2 a₃ E₁₁ E₂₂ + a₄ (2 E₁₂)²",
+        Fung::from_card,
+    ),
+    law(
+        "may-newman",
+        "Ψ = μ/2 (I₁ − 3) + c₀ (e^(c₁ (I₁ − 3)² + c₂ (√I₄ − 1)⁴) − 1)",
+        MayNewman::from_card,
+    ),
+    law(
+        "lee-sacks",
+        "Ψ = c₁₀/2 (I₁ − 3) + c₀/2 (δ e^(c₁ (I₁ − 3)²) + (1 − δ) e^(c₂ ⟨I₄ − 1⟩²) − 1)",
+        LeeSacks::from_card,
+    ),
+    law(
+        "holzapfel-ogden",
+        "Ψ = a/(2b) (e^(b (I₁ − 3)) − 1) + Σ aᵢ/(2bᵢ) (e^(bᵢ ⟨I₄ᵢ − 1⟩²) − 1) + a_fs/(2b_fs) (e^(b_fs I₈²) − 1), i = f, s",
+        HolzapfelOgden::from_card,
+    ),
+    law(
+        "neo-hooke-simo-pister",
+        "W = μ/2 (I₁ − 3 − 2 ln J) + Λ/2 ln² J, Λ = 2μν/(1 − 2ν)",
+        CompressibleNeoHooke::<true>::from_card,
+    ),
+    law(
+        "neo-hooke-ciarlet",
+        "W = μ/2 (I₁ − 3 − 2 ln J) + Λ/4 (J² − 1 − 2 ln J), Λ = 2μν/(1 − 2ν)",
+        CompressibleNeoHooke::<false>::from_card,
+    ),
+    law(
+        "blatz-ko",
+        "W = μ/2 f (I₁ − 3 + (J^(−2β) − 1)/β) + μ/2 (1 − f) (I₂/J² − 3 + (J^(2β) − 1)/β), β = ν/(1 − 2ν)",
+        OgdenHill::blatz_ko_from_card,
+    ),
+    law("ogden-hill-1", OGDEN_HILL, OgdenHill::from_card::<1>),
+    law("ogden-hill-2", OGDEN_HILL, OgdenHill::from_card::<2>),
+    law("ogden-hill-3", OGDEN_HILL, OgdenHill::from_card::<3>),
+    law(
+        "saint-venant-kirchhoff",
+        "W = Λ/2 (tr E)² + μ E : E, E = (FᵀF − 1)/2, Λ = 2μν/(1 − 2ν)",
+        SaintVenantKirchhoff::from_card,
+    ),
+    law(
+        "linear-elastic",
+        "W = Λ/2 (tr ε)² + μ ε : ε, ε = (H + Hᵀ)/2, Λ = 2μν/(1 − 2ν)",
+        LinearElastic::from_card,
+    ),
+    law(
+        SWELLING,
+        "W/φ = G₀/(2φ₀) (λ₁² + λ₂² + λ₃² − 3 − B ln J₀) + RT/V₁ ((Q − 1) ln(1 − 1/Q) + χ (1 − 1/Q) − Q ln a)",
+        Network::from_card,
+    ),
 ];
 
 const OGDEN_HILL: &str =
