@@ -44,7 +44,7 @@ use crate::mesh::{Interpolation, Mesh};
 use crate::problem::sheet_energy::SheetEnergy;
 use crate::problem::{BoundaryProblem, Model};
 use crate::solve::vector::{add_scaled, difference, norm};
-use crate::solve::{Loading, NewtonSettings, Remembering, Stage, State};
+use crate::solve::{Loading, NewtonSettings, Stage, State};
 
 /// The springs are a first guess, which the correction changes by some hundredths.
 const SPRINGS: NewtonSettings = NewtonSettings {
@@ -149,8 +149,9 @@ impl<'a> NestedMeshes<'a> {
             _ => mesh.refined().linear(),
         };
         let springs = MassSpring::on_mesh(problem.laws(), problem.thickness, lattice);
-        let by_springs = on(problem, &springs.mesh, springs.potential())?;
-        let by_springs = by_springs.describing(|element| springs.describe_element(element));
+        let by_springs = problem
+            .on(&springs.mesh, springs.potential())?
+            .describing(|element| springs.describe_element(element));
         let model = self.model(0)?;
         match by_springs.reach(&[factor], SPRINGS) {
             Ok(state) => {
@@ -190,15 +191,9 @@ impl<'a> NestedMeshes<'a> {
     }
 
     fn model(&self, level: usize) -> Result<Model<'_>, Error> {
-        let model = on(self.problem, &self.meshes[level], &self.energies[level])?;
+        let model = self
+            .problem
+            .on(&self.meshes[level], &self.energies[level])?;
         Ok(model.named("corrector"))
     }
-}
-
-fn on<'a>(
-    problem: &BoundaryProblem,
-    mesh: &'a Mesh,
-    energy: &'a dyn Remembering,
-) -> Result<Model<'a>, Error> {
-    Ok(problem.on(mesh, energy)?)
 }

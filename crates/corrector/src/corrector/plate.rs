@@ -71,22 +71,18 @@ pub struct PlateCorrector<'a> {
     energy: SheetEnergy,
     assembly: Assembly,
     settings: CorrectorSettings,
-    names: PlateNames,
-}
-
-/// Names of a plate's elements and nodes by their places.
-struct PlateNames {
+    /// The scheme's elements, which messages name.
     elements: Mesh,
-    nodes: Mesh,
 }
 
-impl Describe for PlateNames {
+/// Names of the plate's elements and nodes by their coordinates.
+impl Describe for PlateCorrector<'_> {
     fn element(&self, element: usize) -> String {
         self.elements.describe_cell(element)
     }
 
     fn unknown(&self, unknown: usize) -> String {
-        self.nodes.describe_unknown(unknown)
+        self.mesh.describe_unknown(unknown)
     }
 }
 
@@ -106,10 +102,7 @@ impl<'a> PlateCorrector<'a> {
             energy,
             assembly,
             settings,
-            names: PlateNames {
-                elements: scheme.elements(mesh),
-                nodes: mesh.clone(),
-            },
+            elements: scheme.elements(mesh),
         }
     }
 
@@ -162,13 +155,13 @@ impl<'a> PlateCorrector<'a> {
 
     /// Names of the plate's cells and nodes, for messages.
     pub fn names(&self) -> &dyn Describe {
-        &self.names
+        self
     }
 
     /// The corrector of fields at one stretch, all nodes with the weight 1.
     pub fn corrector(&self, stretch: f64, known: KnownConditions) -> Corrector<'_> {
         let weights = vec![1.0; 2 * self.mesh.nodes.len()];
-        Corrector::new(self.conditions(stretch, known), weights, self.settings).named(&self.names)
+        Corrector::new(self.conditions(stretch, known), weights, self.settings).named(self)
     }
 
     /// F and the known part of T at one stretch.
