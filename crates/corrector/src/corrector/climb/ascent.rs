@@ -14,11 +14,22 @@ const SURE: f64 = 0.7;
 /// Times that the iteration continues where its change is smaller than expected.
 const AGAIN: usize = 6;
 
+/// An equilibrium on one grid.
+pub(super) struct Equilibrium {
+    /// The number of its grid among those of the climb.
+    pub index: usize,
+    /// The displacements in mm.
+    pub field: Field,
+    /// The remaining error in mm, root mean square over the nodes: of Newton's method, its relative residual as a share
+    /// of the displacements.
+    pub remaining_error: f64,
+}
+
 /// A field during the climb.
 pub(super) struct Ascent {
     /// The grid that it has reached.
     index: usize,
-    field: Field,
+    pub field: Field,
     /// The change of the field from the grid before to this one, where there was one, and its size.
     change: Option<Field>,
     size: f64,
@@ -30,14 +41,13 @@ pub(super) struct Ascent {
 }
 
 impl Ascent {
-    /// A corrected field on the first grid, and the remaining error of its correction in mm.
-    pub fn new(
-        index: usize,
-        ratios: Ratios,
-        provenance: Provenance,
-        field: Field,
-        remaining_error: f64,
-    ) -> Self {
+    /// Begins with the equilibrium on the first grid.
+    pub fn new(equilibrium: Equilibrium, ratios: Ratios, provenance: Provenance) -> Self {
+        let Equilibrium {
+            index,
+            field,
+            remaining_error,
+        } = equilibrium;
         Self {
             index,
             corrections: vec![field.size(), remaining_error],
@@ -203,7 +213,8 @@ impl Climb<'_> {
         Ok(())
     }
 
-    /// The same on the finest grid, where the last correction of the iteration turned a cell inside out.
+    /// Replaces the field on the finest grid by that of Newton's method along a path of load steps,
+    /// where the last correction of the iteration turned a cell inside out.
     fn replace_by_load_path(&self, ascent: &mut Ascent, stretch: f64) -> Result<(), Error> {
         let equilibrium = self.along_load_path(ascent.index, stretch)?;
         ascent.field = equilibrium.field;

@@ -22,10 +22,10 @@
 
 use nalgebra::DMatrix;
 
-/// Least share of a correction that it leaves: half of it or a little more was measured where they fall fast.
-const LEFT: f64 = 0.6;
+/// Smallest error after a correction, as a share of it: half or a little more was measured where corrections fall fast.
+const SMALLEST_REMAINDER: f64 = 0.6;
 /// Margin for few iterations, in which the corrections fall faster than the error: the largest ratio on the plates measured.
-const ROOM: f64 = 1.5;
+const MARGIN: f64 = 1.5;
 /// The slowest fall of corrections and the smallest eigenvalue that are accepted.
 const SLOWEST: f64 = 0.95;
 const SMALLEST: f64 = 1.0 - SLOWEST;
@@ -77,7 +77,7 @@ impl CorrectionHistory {
     pub fn remaining_error(&self) -> f64 {
         let last = self.corrections[self.corrections.len() - 1];
         let rate = self.rate().max(1.0 - self.weakest);
-        last * (ROOM * rate / (1.0 - rate)).max(LEFT)
+        last * (MARGIN * rate / (1.0 - rate)).max(SMALLEST_REMAINDER)
     }
 
     /// The factor by which the corrections fall: on the whole or at last, whichever is slower.

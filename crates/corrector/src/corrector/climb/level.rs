@@ -34,7 +34,7 @@ pub struct Level {
 pub struct Ending<'a> {
     /// Most iterations.
     pub most: usize,
-    /// The smallest eigenvalue of the preconditioned operator found on coarser grids: see [`Fall`].
+    /// The smallest eigenvalue of the preconditioned operator found on coarser grids: see [`CorrectionHistory`].
     pub weakest: f64,
     /// Whether the first correction and the remaining error are good enough.
     pub enough: &'a dyn Fn(f64, f64) -> bool,

@@ -6,8 +6,9 @@
 //! why a path ends.
 
 use super::Climb;
+use super::ascent::Equilibrium;
 use super::grid::{Field, Grid};
-use super::start::contracted_stretch;
+use super::start::stretch_per_unit;
 use crate::error::{Error, SolveFault};
 use crate::mesh::Mesh;
 use crate::problem::Model;
@@ -21,16 +22,6 @@ const NEWTON: NewtonSettings = NewtonSettings {
     tolerance: 1e-9,
     max_iterations: 60,
 };
-
-/// An equilibrium on one grid.
-pub(super) struct Equilibrium {
-    /// The number of its grid among those of the climb.
-    pub index: usize,
-    /// The displacements in mm.
-    pub field: Field,
-    /// The remaining error of Newton's method in mm: its relative residual as a share of the displacements.
-    pub remaining_error: f64,
-}
 
 /// The scheme's plate on a grid.
 struct GridPlate<'a> {
@@ -77,15 +68,14 @@ impl Climb<'_> {
         }
     }
 
-    /// The problem on a grid's plate; the first guess of a path to a stretch is the contracted stretch.
+    /// The problem on a grid's plate; a path to a stretch begins at the contracted stretch.
     fn model<'a>(&self, plate: &'a GridPlate, stretch: f64) -> Model<'a> {
-        let mut guess = contracted_stretch(self.problem.size, plate.grid, stretch);
-        guess.scale(if stretch == 0.0 { 1.0 } else { 1.0 / stretch });
+        let guess = stretch_per_unit(self.problem.size, plate.grid, stretch);
         let model = self.problem.on(&plate.mesh, &plate.energy);
         model
             .named("corrector (climb)")
             .describing(|element| plate.describe(element))
-            .guessing(guess.to_nodes())
+            .guessing(guess)
     }
 
     fn load_path(&self, index: usize, stretch: f64) -> Result<Equilibrium, Error> {

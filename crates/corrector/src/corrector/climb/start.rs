@@ -2,22 +2,12 @@
 //!
 //! The corrector does not depend on the origin of ū, so that several starts are tried in a fixed order until one can be corrected: see [`Start`].
 
-use super::ascent::Ascent;
+use super::ascent::{Ascent, Equilibrium};
 use super::provenance::{Provenance, Start};
 use super::{Climb, Field, Grid, ONLY_GRID_TOLERANCE, START_TOLERANCE};
 use crate::error::{Error, SolveFault};
 use crate::mass_spring::{LARGEST_ASPECT, LatticeSettings, MassSpring};
 use crate::solve::NewtonSettings;
-
-/// A corrected field on the first grid.
-pub(super) struct First {
-    /// The displacements in mm.
-    pub field: Field,
-    /// See [`Way::away`].
-    away: f64,
-    /// The remaining error of the correction, root mean square over the nodes in mm.
-    remaining_error: f64,
-}
 
 /// The springs are a first guess, which the correction changes by some hundredths: a more exact equilibrium of them would waste time.
 const SPRINGS: NewtonSettings = NewtonSettings {
@@ -40,53 +30,40 @@ impl Climb<'_> {
     pub(super) fn first_field(&mut self, stretch: f64) -> Result<Ascent, Error> {
         for steps in [1].into_iter().chain(LOAD_STEPS) {
             if let Some(first) = self.correct_springs(steps, stretch) {
-                let start = if steps == 1 {
-                    Start::Springs
-                } else {
-                    Start::LoadSteps(steps)
-                };
-                return Ok(self.begin(start, first));
+                return Ok(first);
             }
         }
         let equilibrium = self.along_load_path(self.start, stretch)?;
         self.write_operators(&equilibrium);
-        let (grid, remaining_error) = (
-            &self.levels[equilibrium.index].grid,
-            equilibrium.remaining_error,
-        );
-        let provenance = Provenance::from_start(Start::LoadPath, grid.cells());
-        Ok(Ascent::new(
-            equilibrium.index,
-            self.ratios,
-            provenance,
-            equilibrium.field,
-            remaining_error,
-        ))
-    }
-
-    fn begin(&self, start: Start, first: First) -> Ascent {
-        let grid = &self.levels[self.start].grid;
-        let provenance = Provenance {
-            away: first.away,
-            ..Provenance::from_start(start, grid.cells())
-        };
-        Ascent::new(
-            self.start,
-            self.ratios,
-            provenance,
-            first.field,
-            first.remaining_error,
-        )
+        let cells = self.levels[equilibrium.index].grid.cells();
+        let provenance = Provenance::from_start(Start::LoadPath, cells);
+        Ok(Ascent::new(equilibrium, self.ratios, provenance))
     }
 
     /// The springs' field at the first of so many load steps, corrected and led to the stretch on the first grid; `None` where it cannot be.
-    pub(super) fn correct_springs(&mut self, steps: usize, stretch: f64) -> Option<First> {
+    pub(super) fn correct_springs(&mut self, steps: usize, stretch: f64) -> Option<Ascent> {
         let guess = self.springs(stretch / steps as f64)?;
-        self.load_steps(guess, steps).ok()
+        let (corrected, away) = self.load_steps(guess, steps).ok()?;
+        let start = if steps == 1 {
+            Start::Springs
+        } else {
+            Start::LoadSteps(steps)
+        };
+        let cells = self.levels[self.start].grid.cells();
+        let provenance = Provenance {
+            away,
+            ..Provenance::from_start(start, cells)
+        };
+        Some(Ascent::new(corrected, self.ratios, provenance))
     }
 
-    /// Corrects on the first grid in equal load steps, each from the field before, scaled with the motion of the grip.
-    fn load_steps(&mut self, mut field: Field, steps: usize) -> Result<First, SolveFault> {
+    /// Corrects on the first grid in equal load steps, each from the field before, scaled with the motion of the grip;
+    /// returns the last field, and the distance of the guess from the first one: see [`Provenance::away`].
+    fn load_steps(
+        &mut self,
+        mut field: Field,
+        steps: usize,
+    ) -> Result<(Equilibrium, f64), SolveFault> {
         let (mut remaining_error, mut away) = (f64::NAN, f64::NAN);
         for step in 1..=steps {
             let mut guess = field.clone();
@@ -100,11 +77,12 @@ impl Climb<'_> {
                 field.scale((step + 1) as f64 / step as f64);
             }
         }
-        Ok(First {
+        let corrected = Equilibrium {
+            index: self.start,
             field,
-            away,
             remaining_error,
-        })
+        };
+        Ok((corrected, away))
     }
 
     /// Corrects on the first grid; returns the remaining error in mm.
@@ -139,9 +117,8 @@ impl Climb<'_> {
         }
         let springs = MassSpring::new(self.problem, cells, LatticeSettings::default());
         let lattice = Grid::even(self.problem.size, cells);
-        let mut guess = contracted_stretch(self.problem.size, &lattice, stretch);
-        guess.scale(if stretch == 0.0 { 1.0 } else { 1.0 / stretch });
-        let model = springs.model(self.problem).guessing(guess.to_nodes());
+        let guess = stretch_per_unit(self.problem.size, &lattice, stretch);
+        let model = springs.model(self.problem).guessing(guess);
         let solved = model.reach(&[stretch], SPRINGS).ok()?;
         let field = Field::of_nodes(&lattice, &solved.displacement);
         Some(field.onto(&lattice, grid))
@@ -169,7 +146,7 @@ fn sound_cells(size: [f64; 2], cells: [usize; 2]) -> [usize; 2] {
 /// ```
 ///
 /// It turns no cell inside out on any grid: ux is of X alone, and y grows with Y because 0 ≤ g < 1 and 0 < h′ ≤ 1.
-pub(super) fn contracted_stretch(size: [f64; 2], grid: &Grid, stretch: f64) -> Field {
+fn contracted_stretch(size: [f64; 2], grid: &Grid, stretch: f64) -> Field {
     let [length, width] = size;
     let contraction = (1.0 + stretch).max(f64::MIN_POSITIVE).powf(-0.5) - 1.0;
     let held = |x: f64| 1.0 - cosh_ratio(4.0 * (x - 0.5 * length) / width, 2.0 * length / width);
@@ -190,6 +167,13 @@ pub(super) fn contracted_stretch(size: [f64; 2], grid: &Grid, stretch: f64) -> F
         }
     }
     field
+}
+
+/// The contracted stretch per unit of stretch, at the nodes: the first guess of a path to a stretch.
+pub(super) fn stretch_per_unit(size: [f64; 2], grid: &Grid, stretch: f64) -> Vec<f64> {
+    let mut guess = contracted_stretch(size, grid, stretch);
+    guess.scale(if stretch == 0.0 { 1.0 } else { 1.0 / stretch });
+    guess.to_nodes()
 }
 
 /// cosh a/cosh b for |a| ≤ b, however large they are.
