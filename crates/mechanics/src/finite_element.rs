@@ -137,7 +137,6 @@ impl FiniteElements {
         progress: &dyn Fn(f64),
     ) -> Result<Vec<State>, Error> {
         let model = self.model(plate);
-        let states = model.solve(&plate.stretches, settings, progress);
-        states.map_err(|end| model.error(&end))
+        model.reach_all(&plate.stretches, settings, progress)
     }
 }

@@ -105,7 +105,7 @@ pub fn warning(law: &dyn HyperelasticLaw) -> Option<String> {
     })
 }
 
-/// The same of a plate's lattice, which may have an area term.
+/// [`warning`] of a plate's lattice, which may have an area term.
 pub fn warning_of_plate(law: &dyn HyperelasticLaw) -> Option<String> {
     let message = warning(law)?;
     Some(message + "; an area term (`mass_spring.area_term`) gives them the sheet's ν")
@@ -265,7 +265,6 @@ impl MassSpring {
         progress: &dyn Fn(f64),
     ) -> Result<Vec<State>, Error> {
         let model = self.model(plate);
-        let states = model.solve(&plate.stretches, settings, progress);
-        states.map_err(|end| model.error(&end))
+        model.reach_all(&plate.stretches, settings, progress)
     }
 }

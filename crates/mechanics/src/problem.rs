@@ -24,7 +24,6 @@ mod singular;
 mod solution;
 mod ties;
 mod unstrained;
-mod work;
 
 pub use balance::{Balance, Resultant};
 pub use boundary::BoundaryProblem;
@@ -32,13 +31,12 @@ pub use boundary_conditions::{Drive, LONGEST_TURN, Load, Support};
 pub use deformed::{DeformedSheet, PointFault, Stress};
 pub use groups::mean_displacement;
 pub use laws::{CellLaws, LawAndRegions, Region, SheetLaws};
-pub use model::Model;
+pub use model::{Model, Work};
 pub use plate::{ClampedPlate, Measures};
 pub use reactions::{GroupState, Reactions};
 pub use rigid_motion::RigidMotion;
 pub use singular::singular_points;
 pub use solution::Solution;
-pub use work::Work;
 
 #[cfg(test)]
 mod tests;

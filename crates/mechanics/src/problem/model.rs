@@ -5,7 +5,6 @@ use super::constraints::{Constraints, Motion};
 use super::loads::Loads;
 use super::rigid::free_motions;
 use super::ties::TiedPotential;
-use super::work::Work;
 use crate::error::{Diagnostic, Error, SolveFault};
 use crate::mesh::Mesh;
 use crate::solve::vector::add_scaled;
@@ -16,6 +15,15 @@ use crate::solve::{
 
 /// Names an element or the end of a path.
 type Name<'a, T> = Box<dyn Fn(T) -> String + Sync + 'a>;
+
+/// The work done on a body whose material has a memory, stored and dissipated.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Work {
+    /// The energy that unloading recovers, in mJ.
+    pub stored: f64,
+    /// The energy that softening has dissipated, in mJ.
+    pub dissipated: f64,
+}
 
 /// A boundary value problem on a mesh, ready to be solved with any energy of its nodes.
 pub struct Model<'a> {
@@ -123,7 +131,7 @@ impl<'a> Model<'a> {
 
     /// Sets another name for the load factor in messages.
     #[must_use]
-    pub(super) fn telling_ends(self, describe_end: fn(&PathEnd) -> String) -> Self {
+    pub(super) fn describing_ends(self, describe_end: fn(&PathEnd) -> String) -> Self {
         Self {
             describe_end,
             ..self
@@ -195,15 +203,6 @@ impl<'a> Model<'a> {
         })
     }
 
-    /// The end of a path as an error.
-    pub fn error(&self, end: &PathEnd) -> Error {
-        Error::Solve {
-            model: self.name.clone(),
-            step: (self.describe_end)(end),
-            fault: end.fault.clone(),
-        }
-    }
-
     /// Solves for load factors, one after the other. One that cannot be reached from the one before in a single step
     /// is approached by shorter steps.
     ///
@@ -218,7 +217,7 @@ impl<'a> Model<'a> {
         self.attended(factors, settings, Attendance::told(progress))
     }
 
-    /// The same with attendance: equilibria may be kept, and resumed from where they were kept.
+    /// Solves for load factors as [`Model::solve`] with attendance: equilibria may be kept, and resumed from where they were kept.
     ///
     /// # Errors
     /// As [`Model::solve`].
@@ -241,6 +240,24 @@ impl<'a> Model<'a> {
         follow(self, factors, settings, attendance)
     }
 
+    /// The states at all of some load factors.
+    ///
+    /// # Errors
+    /// [`Error::Solve`] with the load factor that could not be reached.
+    pub fn reach_all(
+        &self,
+        factors: &[f64],
+        settings: NewtonSettings,
+        progress: &dyn Fn(f64),
+    ) -> Result<Vec<State>, Error> {
+        let states = self.solve(factors, settings, progress);
+        states.map_err(|end| Error::Solve {
+            model: self.name.clone(),
+            step: (self.describe_end)(&end),
+            fault: end.fault,
+        })
+    }
+
     /// The state at the last of some load factors.
     ///
     /// # Errors
@@ -249,8 +266,7 @@ impl<'a> Model<'a> {
     /// # Panics
     /// When there is no load factor.
     pub fn reach(&self, factors: &[f64], settings: NewtonSettings) -> Result<State, Error> {
-        let states = self.solve(factors, settings, &|_| ());
-        let states = states.map_err(|end| self.error(&end))?;
+        let states = self.reach_all(factors, settings, &|_| ())?;
         Ok(states.into_iter().last().expect("a load factor"))
     }
 

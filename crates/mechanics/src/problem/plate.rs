@@ -48,7 +48,7 @@ impl ClampedPlate {
         let model = model.expect("the sides of a plate are groups of its mesh");
         model
             .guessing(self.affine(mesh, 1.0))
-            .telling_ends(describe_end)
+            .describing_ends(describe_end)
     }
 
     /// Marks the unknowns of `mesh` that the grips hold.

@@ -1,8 +1,7 @@
 //! The equilibria of a model along a path, and the states of groups of its mesh.
 
-use super::model::Model;
+use super::model::{Model, Work};
 use super::reactions::GroupState;
-use super::work::Work;
 use crate::mesh::Mesh;
 use crate::solve::State;
 use crate::statistics::larger;

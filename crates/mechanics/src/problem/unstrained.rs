@@ -4,8 +4,7 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::boundary::BoundaryProblem;
 use super::boundary_conditions::Load;
-use super::constraints::Constraints;
-use super::constraints::FACTORS;
+use super::constraints::{Constraints, FACTORS};
 use crate::error::Diagnostic;
 use crate::mesh::Mesh;
 

@@ -2,6 +2,8 @@
 
 use rayon::prelude::*;
 
+use crate::solve::grouped::grouped;
+
 /// Rows from which on a product is shared among threads; each row is summed by one of them.
 const WORTH_A_THREAD: usize = 8_192;
 
@@ -25,9 +27,9 @@ impl<const R: usize, const C: usize, T> Blocks<R, C, T> {
     /// The blocks of a row with their columns.
     pub fn row(&self, row: usize) -> impl Iterator<Item = (usize, &[[T; C]; R])> {
         let positions = self.starts[row]..self.starts[row + 1];
-        let columns = self.columns[positions.clone()].iter();
-        let columns = columns.map(|column| *column as usize);
-        columns.zip(&self.values[positions])
+        let columns = &self.columns[positions.clone()];
+        let numbers = columns.iter().map(|column| *column as usize);
+        numbers.zip(&self.values[positions])
     }
 }
 
@@ -60,32 +62,19 @@ impl<const R: usize, const C: usize> Blocks<R, C> {
 
     /// Aᵀ, which has so many rows.
     pub fn transposed(&self, rows: usize) -> Blocks<C, R> {
-        let mut starts = vec![0; rows + 1];
-        for column in &self.columns {
-            starts[*column as usize + 1] += 1;
-        }
-        for row in 0..rows {
-            starts[row + 1] += starts[row];
-        }
-        let mut next = starts.clone();
-        let mut columns = vec![0; self.columns.len()];
-        let mut values = vec![[[0.0; R]; C]; self.columns.len()];
-        for row in 0..self.rows() {
-            for (column, block) in self.row(row) {
-                let position = next[column];
-                next[column] += 1;
-                columns[position] = row as u32;
-                for (i, entries) in block.iter().enumerate() {
-                    for (k, entry) in entries.iter().enumerate() {
-                        values[position][k][i] = *entry;
-                    }
-                }
-            }
-        }
+        let blocks = (0..self.rows()).flat_map(|row| {
+            let positions = self.starts[row]..self.starts[row + 1];
+            positions.map(move |position| (self.columns[position] as usize, (row as u32, position)))
+        });
+        let (starts, entries) = grouped(rows, blocks);
+        let transposed = |position: usize| -> [[f64; R]; C] {
+            let block = &self.values[position];
+            std::array::from_fn(|k| std::array::from_fn(|i| block[i][k]))
+        };
         Blocks {
             starts,
-            columns,
-            values,
+            columns: entries.iter().map(|(row, _)| *row).collect(),
+            values: entries.iter().map(|(_, at)| transposed(*at)).collect(),
         }
     }
 
@@ -141,7 +130,7 @@ where
 
 /// S ← S + A B of single blocks.
 #[inline(always)]
-fn add_matrix_product<const R: usize, const C: usize, const D: usize>(
+pub fn add_matrix_product<const R: usize, const C: usize, const D: usize>(
     sum: &mut [[f64; D]; R],
     a: &[[f64; C]; R],
     b: &[[f64; D]; C],

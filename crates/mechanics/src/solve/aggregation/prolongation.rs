@@ -7,7 +7,7 @@
 //! B holds the motions without strain, T those of each aggregate, orthonormal, and R the same motions on the coarser level.
 
 use super::aggregates::Aggregates;
-use super::blocks::{Blocks, add_product};
+use super::blocks::{Blocks, add_matrix_product, add_product};
 
 /// A motion whose part across the others of its aggregate is smaller than this share of it has no unknown of its own.
 const DEPENDENT: f64 = 1e-6;
@@ -92,14 +92,7 @@ pub fn smoothed<const N: usize>(
                 *position = sums.len() as u32;
                 sums.push((aggregate, [[0.0; 3]; N]));
             }
-            let sum = &mut sums[*position as usize].1;
-            for (i, entries) in block.iter().enumerate() {
-                for (entry, motion) in entries.iter().zip(&rigid[node]) {
-                    for k in 0..3 {
-                        sum[i][k] += entry * motion[k];
-                    }
-                }
-            }
+            add_matrix_product(&mut sums[*position as usize].1, block, &rigid[node]);
         }
         for (aggregate, sum) in &mut sums {
             let image = *sum;
