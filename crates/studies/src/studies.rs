@@ -72,7 +72,7 @@ impl<'a> Progress<'a> {
     {
         Attendance {
             journal: self.journal,
-            ..Attendance::told(reached)
+            ..Attendance::reporting(reached)
         }
     }
 }

@@ -226,7 +226,7 @@ mod tests {
                 continue;
             };
             let model = elements.model(&plate);
-            let attendance = Attendance::told(&|_| ());
+            let attendance = Attendance::reporting(&|_| ());
             let folded = quarter.states(&model, &plate.stretches, None, settings, attendance);
             let folded = folded.unwrap_or_else(|| panic!("{card}: none"));
             let full = model.solve(&plate.stretches, settings, &|_| ()).unwrap();

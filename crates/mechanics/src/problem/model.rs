@@ -214,7 +214,7 @@ impl<'a> Model<'a> {
         settings: NewtonSettings,
         progress: &dyn Fn(f64),
     ) -> Result<Vec<State>, PathEnd> {
-        self.attended(factors, settings, Attendance::told(progress))
+        self.attended(factors, settings, Attendance::reporting(progress))
     }
 
     /// Solves for load factors as [`Model::solve`] with attendance: equilibria may be kept, and resumed from where they were kept.

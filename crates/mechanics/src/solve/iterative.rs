@@ -37,7 +37,7 @@ pub struct Iterative {
     /// Whether the cycle was made for the values taken last, or for others, or is to be made.
     built: Built,
     /// Iterations per digit with a cycle made for the tangent itself.
-    pace: f64,
+    iterations_per_digit: f64,
 }
 
 /// The values for which a cycle was made.
@@ -81,7 +81,7 @@ impl Iterative {
             nodes,
             cycle: None,
             built: Built::Not,
-            pace: f64::INFINITY,
+            iterations_per_digit: f64::INFINITY,
         })
     }
 
@@ -119,7 +119,7 @@ impl Iterative {
             if let Ok(solution) = &solution
                 && solution.reduction <= reduction
             {
-                self.judge(solution.iterations, solution.reduction);
+                self.discard_if_stale(solution.iterations, solution.reduction);
                 return Ok(self.nodes.gather(&solution.x));
             }
             if self.built == Built::ForThese {
@@ -152,15 +152,15 @@ impl Iterative {
     }
 
     /// Discards a cycle that was made for other values and takes many more iterations than one made for its own.
-    fn judge(&mut self, iterations: usize, reduction: f64) {
+    fn discard_if_stale(&mut self, iterations: usize, reduction: f64) {
         if reduction == 1.0 {
             return;
         }
         let digits = -reduction.max(1e-16).log10();
-        let pace = (iterations as f64 - 1.0) / digits.max(1.0);
+        let per_digit = (iterations as f64 - 1.0) / digits.max(1.0);
         if self.built == Built::ForThese {
-            self.pace = pace;
-        } else if pace > STALE * self.pace {
+            self.iterations_per_digit = per_digit;
+        } else if per_digit > STALE * self.iterations_per_digit {
             self.built = Built::Not;
         }
     }

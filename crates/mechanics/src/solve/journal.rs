@@ -36,7 +36,7 @@ pub struct Attendance<'a> {
 
 impl<'a> Attendance<'a> {
     /// An observer that is called with load factors and keeps nothing.
-    pub fn told(reached: &'a dyn Fn(f64)) -> Self {
+    pub fn reporting(reached: &'a dyn Fn(f64)) -> Self {
         Self {
             reached,
             on_the_way: &|_| (),

@@ -88,7 +88,7 @@ fn solve_path(
         model: &model,
         from,
     };
-    let states = follow(&path, factors, NEWTON, Attendance::told(&|_| ()));
+    let states = follow(&path, factors, NEWTON, Attendance::reporting(&|_| ()));
     let states = states.map_err(|end| Error::Solve {
         model: "sheet".into(),
         step: format!("the grip at {grip}"),

@@ -54,6 +54,10 @@ impl Loading for Point {
     }
 }
 
+fn solve(point: &Point, factors: &[f64]) -> Result<Vec<State>, PathEnd> {
+    follow(point, factors, NEWTON, Attendance::reporting(&|_| ()))
+}
+
 /// A linear spring that bears steps up to 0.2 as far as u = 0.5, and any beyond.
 fn cautious(u: f64, s: f64) -> Option<[f64; 3]> {
     let near = u > 0.5 || (u - s).abs() <= 0.2;
@@ -63,7 +67,7 @@ fn cautious(u: f64, s: f64) -> Option<[f64; 3]> {
 #[test]
 fn steps_are_halved_where_they_must_and_grow_again() {
     let point = Point { energy: cautious };
-    let states = follow(&point, &[10.0, 20.0], NEWTON, Attendance::told(&|_| ())).unwrap();
+    let states = solve(&point, &[10.0, 20.0]).unwrap();
     assert_eq!(states.len(), 2);
     assert!((states[1].displacement[0] - 20.0).abs() < 1e-12);
     // 10/64 four times, then doubled from step to step; without growth 64 steps.
@@ -78,7 +82,7 @@ fn a_path_to_negative_factors_is_halved_as_one_to_positive_ones() {
         cautious(-u, -s).map(|[energy, force, stiffness]| [energy, -force, stiffness])
     };
     let point = Point { energy: mirrored };
-    let states = follow(&point, &[-10.0, -20.0], NEWTON, Attendance::told(&|_| ())).unwrap();
+    let states = solve(&point, &[-10.0, -20.0]).unwrap();
     assert!((states[1].displacement[0] + 20.0).abs() < 1e-12);
     let steps = states[0].load_steps;
     assert!(steps > 6 && steps < 16, "{steps}");
@@ -90,7 +94,7 @@ fn a_maximum_far_below_the_wanted_load_is_named() {
     let point = Point {
         energy: |u, _| Some([0.5 * u * u - u.powi(3) / 6.0, u - 0.5 * u * u, 1.0 - u]),
     };
-    let end = follow(&point, &[1000.0], NEWTON, Attendance::told(&|_| ())).unwrap_err();
+    let end = solve(&point, &[1000.0]).unwrap_err();
     let reached = end.reached();
     assert!(reached <= 0.5 && reached > 0.5 - 2e-3, "{reached}");
     assert!(
@@ -113,7 +117,7 @@ fn a_path_does_not_snap_to_another_branch_without_a_word() {
         },
     };
     for factors in [&[2.0][..], &[0.5, 2.0], &[0.9, 1.0]] {
-        match follow(&point, factors, NEWTON, Attendance::told(&|_| ())) {
+        match solve(&point, factors) {
             Ok(states) => {
                 let snapped = states.iter().map(|state| state.convergence.snaps);
                 assert_eq!(snapped.sum::<usize>(), 1, "{factors:?}");
@@ -132,7 +136,7 @@ fn a_path_comes_near_to_the_maximum_of_its_load_and_names_it() {
     let point = Point {
         energy: |u, _| Some([0.5 * u * u - u.powi(3) / 6.0, u - 0.5 * u * u, 1.0 - u]),
     };
-    let end = follow(&point, &[0.25, 0.7], NEWTON, Attendance::told(&|_| ())).unwrap_err();
+    let end = solve(&point, &[0.25, 0.7]).unwrap_err();
     assert_eq!(end.states.len(), 1);
     let last = end.last.clone().expect("an equilibrium beyond 0.25");
     assert!(
@@ -159,7 +163,7 @@ fn a_path_comes_near_to_the_maximum_of_its_load_and_names_it() {
 fn a_body_that_is_not_stable_at_rest_is_told_so() {
     let negative = |u: f64, _: f64| Some([-0.5 * u * u, -u, -1.0]);
     let point = Point { energy: negative };
-    let end = follow(&point, &[0.1], NEWTON, Attendance::told(&|_| ())).unwrap_err();
+    let end = solve(&point, &[0.1]).unwrap_err();
     let position = "its place".to_owned();
     assert_eq!(end.fault, SolveFault::UnstableAtRest { position });
 }
@@ -167,7 +171,7 @@ fn a_body_that_is_not_stable_at_rest_is_told_so() {
 #[test]
 fn a_path_may_lead_back_to_rest_and_on_or_end_there() {
     let point = Point { energy: cautious };
-    let states = follow(&point, &[0.4, 0.0, 0.3], NEWTON, Attendance::told(&|_| ())).unwrap();
+    let states = solve(&point, &[0.4, 0.0, 0.3]).unwrap();
     let positions = states.iter().map(|state| state.displacement[0]);
     for (position, expected) in positions.zip([0.4, 0.0, 0.3]) {
         assert!((position - expected).abs() < 1e-12, "{position} {expected}");
@@ -175,8 +179,8 @@ fn a_path_may_lead_back_to_rest_and_on_or_end_there() {
     let never = Point {
         energy: |u, s| (s > 0.2).then_some([0.5 * u * u, u, 1.0]),
     };
-    let end = follow(&never, &[0.0], NEWTON, Attendance::told(&|_| ())).unwrap_err();
+    let end = solve(&never, &[0.0]).unwrap_err();
     assert_eq!(end.reached(), 0.0);
-    let end = follow(&never, &[0.5, 0.0], NEWTON, Attendance::told(&|_| ())).unwrap_err();
+    let end = solve(&never, &[0.5, 0.0]).unwrap_err();
     assert!(end.reached() > 0.2 && end.reached() < 0.21, "{end}");
 }
