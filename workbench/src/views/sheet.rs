@@ -312,7 +312,7 @@ impl Lines<'_> {
     fn cells(&self) {
         let ink = self.position.ui.visuals().text_color().gamma_multiply(0.35);
         for cell in 0..self.mesh.cell_count() {
-            let corners = &self.mesh.cell(cell)[..self.mesh.shape(cell).corners()];
+            let corners = self.mesh.corners(cell);
             let points = corners.iter().map(|node| self.at(*node)).collect();
             let line = Shape::closed_line(points, Stroke::new(0.5, ink));
             self.position.painter.add(line);

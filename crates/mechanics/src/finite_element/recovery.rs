@@ -116,7 +116,7 @@ impl RecoveredGradient {
         let position = mesh.position(cell, local);
         let values = shape.linear().values(local);
         let mut gradient = [0.0; 4];
-        for (corner, value) in mesh.cell(cell)[..shape.corners()].iter().zip(values) {
+        for (corner, value) in mesh.corners(cell).iter().zip(values) {
             let polynomial = self.polynomials[*corner].as_ref();
             let part = polynomial.map_or([0.0; 4], |polynomial| polynomial.gradient(position));
             for (sum, part) in gradient.iter_mut().zip(part) {
@@ -178,9 +178,8 @@ impl<'a> Patches<'a> {
         let mut cells_at = vec![Vec::new(); mesh.nodes.len()];
         let mut degree = 1;
         for cell in 0..mesh.cell_count() {
-            let shape = mesh.shape(cell);
-            degree = degree.max(shape.degree());
-            for corner in &mesh.cell(cell)[..shape.corners()] {
+            degree = degree.max(mesh.shape(cell).degree());
+            for corner in mesh.corners(cell) {
                 cells_at[*corner].push(cell);
             }
         }
@@ -222,10 +221,9 @@ impl<'a> Patches<'a> {
 
     /// Adds the cells that share a corner with those of a patch.
     fn grow(&self, cells: &mut BTreeSet<usize>) {
-        let corners = |cell: usize| &self.mesh.cell(cell)[..self.mesh.shape(cell).corners()];
         let around: Vec<usize> = cells
             .iter()
-            .flat_map(|cell| corners(*cell))
+            .flat_map(|cell| self.mesh.corners(*cell))
             .flat_map(|corner| self.cells_at[*corner].iter().copied())
             .collect();
         cells.extend(around);

@@ -22,14 +22,14 @@ use nalgebra::{DMatrix, DVector};
 
 use super::spring::{CrossSections, Spring};
 use crate::mesh::Mesh;
-use crate::mesh::geometry::polygon_area;
+use crate::mesh::geometry::{distance, polygon_area};
 use crate::problem::CellLaws;
 
 /// The springs of a mesh whose cells have laws: edges, and both diagonals of quadrilaterals.
 pub fn springs(mesh: &Mesh, laws: &CellLaws, thickness: f64) -> Vec<Spring> {
     let mut all = CrossSections::default();
     for cell in 0..mesh.cell_count() {
-        let corners = &mesh.cell(cell)[..mesh.shape(cell).corners()];
+        let corners = mesh.corners(cell);
         let positions: Vec<[f64; 2]> = corners.iter().map(|node| mesh.nodes[*node]).collect();
         let pairs = pairs(corners.len());
         let sections = sections(&positions, &pairs);
@@ -109,7 +109,7 @@ fn van_gelder(corners: &[[f64; 2]], pairs: &[[usize; 2]]) -> Vec<f64> {
     };
     let section = |pair: &[usize; 2]| -> f64 {
         let [from, to] = pair.map(|corner| corners[corner]);
-        let length = (to[0] - from[0]).hypot(to[1] - from[1]);
+        let length = distance(from, to);
         let adjacent = triangles
             .iter()
             .filter(|(triangle, _)| pair.iter().all(|c| triangle.contains(c)));

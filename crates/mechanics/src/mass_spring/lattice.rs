@@ -49,7 +49,7 @@ impl Lattice {
         }
         let mut corners = Vec::new();
         for cell in 0..mesh.cell_count() {
-            let nodes = &mesh.cell(cell)[..mesh.shape(cell).corners()];
+            let nodes = mesh.corners(cell);
             connectivity.push_nodes(nodes);
             corners.push(nodes.iter().map(|node| mesh.nodes[*node]).collect());
         }

@@ -87,8 +87,7 @@ impl Mesh {
 
     /// The corners of a triangle, turned so that its longest edge is the first.
     fn longest_first(&self, cell: usize) -> [usize; 3] {
-        let corners = &self.cell(cell)[..self.shape(cell).corners()];
-        let [a, b, c]: [usize; 3] = corners.try_into().expect("triangles");
+        let [a, b, c]: [usize; 3] = self.corners(cell).try_into().expect("triangles");
         let length = |corners: &[usize; 3]| self.squared_length(key(corners[0], corners[1]));
         let turns = [[a, b, c], [b, c, a], [c, a, b]].into_iter();
         let longest = turns.max_by(|one, other| length(one).total_cmp(&length(other)));

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::buckets::Buckets;
 use super::cell_shape::CellShape;
-use super::geometry::bounding_box;
+use super::geometry::{bounding_box, distance};
 use super::grid::Grid;
 use super::neighbours::Neighbours;
 
@@ -119,6 +119,11 @@ impl Mesh {
         &self.connectivity[self.starts[cell]..self.starts[cell + 1]]
     }
 
+    /// The nodes at the corners of a cell.
+    pub fn corners(&self, cell: usize) -> &[usize] {
+        &self.cell(cell)[..self.shape(cell).corners()]
+    }
+
     /// The groups by name.
     pub fn groups(&self) -> &BTreeMap<String, Group> {
         &self.groups
@@ -213,7 +218,7 @@ impl Mesh {
 
     /// Centre of a cell in mm: the mean of its corners.
     pub fn centre(&self, cell: usize) -> [f64; 2] {
-        let corners = &self.cell(cell)[..self.shape(cell).corners()];
+        let corners = self.corners(cell);
         [0, 1].map(|axis| {
             let sum: f64 = corners.iter().map(|node| self.nodes[*node][axis]).sum();
             sum / corners.len() as f64
@@ -223,6 +228,12 @@ impl Mesh {
     /// Lower left and upper right corner of the box around all nodes, in mm.
     pub fn bounding_box(&self) -> [[f64; 2]; 2] {
         bounding_box(self.nodes.iter().copied())
+    }
+
+    /// Length of the diagonal of the box around all nodes, in mm.
+    pub fn diagonal(&self) -> f64 {
+        let [low, high] = self.bounding_box();
+        distance(low, high)
     }
 
     /// Middle of the box around all nodes, in mm.

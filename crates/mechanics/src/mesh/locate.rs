@@ -2,7 +2,7 @@
 
 use super::buckets::Buckets;
 use super::cells::Mesh;
-use super::geometry::{bounding_box, determinant};
+use super::geometry::{bounding_box, determinant, distance};
 
 /// Distance that counts as zero, relative to the size of a cell.
 const ROUNDING: f64 = 2e-15;
@@ -184,11 +184,8 @@ impl Mesh {
 /// The cell whose centre is nearest to a point far away from all cells, and the point's coordinates by the map at the
 /// centre.
 fn far_away(mesh: &Mesh, point: [f64; 2]) -> (usize, [f64; 2]) {
-    let distance = |cell: &usize| {
-        let centre = mesh.centre(*cell);
-        (point[0] - centre[0]).hypot(point[1] - centre[1])
-    };
-    let cell = (0..mesh.cell_count()).min_by(|a, b| distance(a).total_cmp(&distance(b)));
+    let from = |cell: &usize| distance(mesh.centre(*cell), point);
+    let cell = (0..mesh.cell_count()).min_by(|a, b| from(a).total_cmp(&from(b)));
     let cell = cell.expect("a mesh has a cell");
     let shape = mesh.shape(cell);
     let start = shape.centre();

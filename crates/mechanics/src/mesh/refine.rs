@@ -14,7 +14,7 @@ impl Mesh {
     pub fn linear(&self) -> Self {
         let cells = (0..self.cell_count()).map(|cell| {
             let shape = self.shape(cell);
-            (shape.linear(), self.cell(cell)[..shape.corners()].to_vec())
+            (shape.linear(), self.corners(cell).to_vec())
         });
         let mut names = vec![usize::MAX; self.nodes.len()];
         let mut nodes = Vec::new();
@@ -140,10 +140,9 @@ impl<'a> Subdivision<'a> {
 
     /// The corners of a cell.
     pub fn corners(&self, cell: usize) -> Vec<Point> {
-        let shape = self.mesh.shape(cell);
-        let nodes = self.mesh.cell(cell)[..shape.corners()].iter();
-        let positions = nodes.zip(shape.natural_nodes());
-        positions
+        let nodes = self.mesh.corners(cell).iter();
+        nodes
+            .zip(self.mesh.shape(cell).natural_nodes())
             .map(|(node, local)| Point {
                 node: *node,
                 local: *local,

@@ -1,7 +1,7 @@
 //! The balance of all forces on a body, and of their moments.
 
 use crate::mesh::Mesh;
-use crate::mesh::geometry::bounding_box;
+use crate::mesh::geometry::{bounding_box, distance};
 use crate::statistics::larger;
 
 /// Forces and their moment about a point.
@@ -100,7 +100,7 @@ impl Body {
             positions,
             centre,
             from_middle: [0, 1].map(|axis| centre[axis] - middle[axis]),
-            half_diagonal: 0.5 * (high[0] - low[0]).hypot(high[1] - low[1]),
+            half_diagonal: 0.5 * distance(low, high),
         }
     }
 

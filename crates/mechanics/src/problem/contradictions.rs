@@ -29,8 +29,7 @@ pub fn contradictions(
     supports: &[(String, Support)],
     mesh: &Mesh,
 ) -> Result<Vec<Diagnostic>, Diagnostic> {
-    let [low, high] = mesh.bounding_box();
-    let rounding = 1e-12 * (high[0] - low[0]).hypot(high[1] - low[1]);
+    let rounding = 1e-12 * mesh.diagonal();
     let mut demands: BTreeMap<usize, Vec<(usize, Demand)>> = BTreeMap::new();
     for (number, support) in supports.iter().enumerate() {
         let constraints = Constraints::each(mesh, std::slice::from_ref(support))?;

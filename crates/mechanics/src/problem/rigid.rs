@@ -85,13 +85,12 @@ impl<'a> Bodies<'a> {
                 }
             }
         }
-        let [low, high] = mesh.bounding_box();
         Self {
             mesh,
             cells,
             of_node,
             centre: mesh.middle(),
-            size: 0.5 * (high[0] - low[0]).hypot(high[1] - low[1]),
+            size: 0.5 * mesh.diagonal(),
         }
     }
 

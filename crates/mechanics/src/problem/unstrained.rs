@@ -56,8 +56,7 @@ impl BoundaryProblem {
 
 /// Whether all prescribed displacements at a load factor are those of one rigid motion.
 fn is_rigid(mesh: &Mesh, constraints: &Constraints, factor: f64) -> bool {
-    let ([low, high], middle) = (mesh.bounding_box(), mesh.middle());
-    let size = (high[0] - low[0]).hypot(high[1] - low[1]);
+    let (size, middle) = (mesh.diagonal(), mesh.middle());
     let prescribed = constraints.held.iter().map(|(unknown, motion)| {
         let at = mesh.nodes[unknown / 2];
         let position = [0, 1].map(|axis| (at[axis] - middle[axis]) / size);

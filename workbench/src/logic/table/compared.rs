@@ -11,7 +11,7 @@ pub(super) fn node_areas(mesh: &Mesh) -> Vec<f64> {
     let mut areas = vec![0.0; mesh.nodes.len()];
     for cell in 0..mesh.cell_count() {
         let nodes = mesh.cell(cell);
-        let corners = &nodes[..mesh.shape(cell).corners()];
+        let corners = mesh.corners(cell);
         let next = corners.iter().cycle().skip(1);
         let doubled = corners.iter().zip(next).map(|(one, other)| {
             let ([x, y], [u, v]) = (mesh.nodes[*one], mesh.nodes[*other]);

@@ -60,7 +60,7 @@ pub fn given_twice(mesh: &Mesh) -> Vec<[usize; 2]> {
     let mut twice = Vec::new();
     for cell in 0..mesh.cell_count() {
         let mut corners = [usize::MAX; 4];
-        let nodes = &mesh.cell(cell)[..mesh.shape(cell).corners()];
+        let nodes = mesh.corners(cell);
         corners[..nodes.len()].copy_from_slice(nodes);
         corners.sort_unstable();
         let first = *known.entry(corners).or_insert(cell);
@@ -105,7 +105,7 @@ pub fn badly_shaped(mesh: &Mesh) -> Option<Diagnostic> {
 /// How near the angles between the straight lines from corner to corner come to 0° or 180°, and the longest line over the
 /// shortest one.
 fn shape_of(mesh: &Mesh, cell: usize) -> (f64, f64) {
-    let corners = &mesh.cell(cell)[..mesh.shape(cell).corners()];
+    let corners = mesh.corners(cell);
     let count = corners.len();
     let side = |i: usize| {
         let [a, b] = [corners[i % count], corners[(i + 1) % count]].map(|node| mesh.nodes[node]);

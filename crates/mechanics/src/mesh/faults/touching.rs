@@ -7,7 +7,7 @@ use super::sides::{Side, Sides};
 use crate::error::Diagnostic;
 use crate::mesh::buckets::Buckets;
 use crate::mesh::cells::Mesh;
-use crate::mesh::geometry::bounding_box;
+use crate::mesh::geometry::{bounding_box, distance};
 use crate::mesh::parts::Parts;
 
 /// Places nearer than this share of the shortest edge around are the same place.
@@ -97,7 +97,7 @@ impl<'a> Boundary<'a> {
 
     fn length(&self, side: Side) -> f64 {
         let [a, b] = side.ends.map(|node| self.node(node));
-        (b[0] - a[0]).hypot(b[1] - a[1])
+        distance(a, b)
     }
 
     /// The box around a side, including a margin for nearby nodes.
@@ -134,8 +134,7 @@ impl<'a> Boundary<'a> {
                 return None;
             }
             let near = NEAR * self.length(side).min(self.shortest[&node]);
-            let is_near =
-                |other: [f64; 2]| (other[0] - position[0]).hypot(other[1] - position[1]) <= near;
+            let is_near = |other: [f64; 2]| distance(position, other) <= near;
             if let Some(other) = nodes.into_iter().find(|other| is_near(self.node(*other))) {
                 return Some((side, Contact::Node(other)));
             }

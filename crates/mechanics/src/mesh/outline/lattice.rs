@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use super::polygon::Polygon;
-use crate::mesh::geometry::bounding_box;
+use crate::mesh::geometry::{bounding_box, distance};
 
 /// Lattice points are no nearer than so many sizes to a point of the lines.
 const NEAR: f64 = 0.7;
@@ -20,7 +20,7 @@ pub fn inside(lines: &[Polygon], on_lines: &[[f64; 2]], size: f64) -> Vec<[f64; 
         let [i, j] = square(point);
         let around = (-1..=1).flat_map(|di| (-1..=1).map(move |dj| [i + di, j + dj]));
         let mut points = around.filter_map(|key| squares.get(&key)).flatten();
-        points.any(|p| (p[0] - point[0]).hypot(p[1] - point[1]) < NEAR * size)
+        points.any(|p| distance(point, *p) < NEAR * size)
     };
     let [[left, low], [_, high]] = bounding_box(on_lines.iter().copied());
     // Whole rows between the lowest and the highest point.

@@ -15,7 +15,7 @@ fn in_hole([x, y]: [f64; 2]) -> bool {
 
 fn smallest_angle(mesh: &Mesh) -> f64 {
     let angle = |cell: usize, corner: usize| {
-        let corners = &mesh.cell(cell)[..mesh.shape(cell).corners()];
+        let corners = mesh.corners(cell);
         let count = corners.len();
         let [a, b, c] = [0, 1, count - 1].map(|i| mesh.nodes[corners[(corner + i) % count]]);
         let (p, q) = ([b[0] - a[0], b[1] - a[1]], [c[0] - a[0], c[1] - a[1]]);

@@ -101,7 +101,7 @@ impl Moments {
     fn add(&mut self, sheet: &Deformed, cell: usize) {
         let state = &sheet.states[cell];
         let area = sheet.areas[cell];
-        let [x, y] = sheet.middle(&sheet.mesh.cell(cell)[..sheet.mesh.shape(cell).corners()]);
+        let [x, y] = sheet.middle(sheet.mesh.corners(cell));
         let weight = -state.principal_cauchy()[1] * area;
         let [s11, s22, _, s12] = state.cauchy;
         let radius = (0.5 * (s11 - s22)).hypot(s12).max(f64::MIN_POSITIVE);
