@@ -81,13 +81,9 @@ impl Viscosity for Dashpots<'_> {
                 .branches(motion.memory, long, motion.elapsed)
                 .iter()
                 .sum();
-            let takes: f64 = material
-                .recursions(motion.elapsed)
-                .map(|recursion| recursion.takes)
-                .sum();
             relaxing = pose.stretch * q;
             // d(λ Q)/dλ with dQ = Σ takes dS∞ and λ dS∞/dλ = P′ − S∞.
-            slope = q + takes * (pose.response.slope - long);
+            slope = q + material.taken(motion.elapsed) * (pose.response.slope - long);
         }
         pose.add_force(area * (stress + relaxing), local.force);
         if let Some([by_displacement, by_velocity]) = local.tangents {

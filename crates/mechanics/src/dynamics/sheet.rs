@@ -58,12 +58,9 @@ impl<'a> SheetViscosity<'a> {
             let q = [0, 1, 2].map(|i| branches.iter().map(|q| q[i]).sum());
             stress += first_piola_kirchhoff(kinematics, q);
             if with_tangents {
-                let takes: f64 = material
-                    .recursions(elapsed)
-                    .map(|recursion| recursion.takes)
-                    .sum();
-                let rest = [0, 1, 2].map(|i| q[i] - takes * now[i]);
-                by_displacement = takes * tangent + geometric_tangent(rest);
+                let taken = material.taken(elapsed);
+                let rest = [0, 1, 2].map(|i| q[i] - taken * now[i]);
+                by_displacement = taken * tangent + geometric_tangent(rest);
             }
         }
         let tangents = || [by_displacement, material.newtonian_tangent(kinematics)];

@@ -84,17 +84,18 @@ impl Known {
             ..self.moduli
         };
         let moduli = moduli.solved()?;
+        let has_convention = entries.choices.iter().any(|(key, _)| *key == "convention");
+        let convention = has_convention.then(|| self.stated_convention(&entries.parameters));
         let mut draft = Draft {
             law: self.law,
             title: title.to_owned(),
             density: self.density.clone(),
             parameters: self.parameters.clone(),
+            convention: convention.transpose()?,
+            computed: Vec::new(),
+            volume: None,
             volume_energy: self.volume_energy,
-            ..Draft::of(self.law)
         };
-        if entries.choices.iter().any(|(key, _)| *key == "convention") {
-            draft.convention = Some(self.stated_convention(&entries.parameters)?);
-        }
         self.of_volume(&moduli, &entries.parameters, &mut draft)?;
         if let Some(shear) = moduli.shear {
             self.of_shear_modulus(shear, &entries.parameters, &mut draft)?;

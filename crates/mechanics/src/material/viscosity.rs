@@ -116,6 +116,12 @@ impl ViscousMaterial {
         })
     }
 
+    /// Σ `takes` of all branches over a step of `elapsed` s: d(Σ Qᵢ)/dS∞ at its end.
+    pub fn taken(&self, elapsed: f64) -> f64 {
+        let takes = self.recursions(elapsed).map(|recursion| recursion.takes);
+        takes.sum()
+    }
+
     /// The stresses Qᵢ of all branches after a step of `elapsed` s that ends at S∞ = `now`, from the memory of S∞ and
     /// Qᵢ before the step, three components each.
     pub fn branches(&self, memory: &[f64], now: [f64; 3], elapsed: f64) -> Vec<[f64; 3]> {

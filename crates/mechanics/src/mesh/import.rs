@@ -18,14 +18,12 @@ mod gmsh;
 mod pvd;
 mod raw;
 mod sides;
-mod unreadable;
 mod unstructured;
 mod vtk;
 mod vtu;
 
-use raw::{Raw, read_text};
+use raw::{Raw, Unreadable, read_text};
 use sides::doubtful_sides;
-use unreadable::Unreadable;
 
 pub use field::{
     ImportFault, ImportedField, ImportedSeries, ImportedStep, import_field, import_series,

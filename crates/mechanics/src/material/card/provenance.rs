@@ -88,9 +88,10 @@ impl Card {
     /// The range of stretches in words: `λ = 1 … 2 (uniaxial test)`.
     pub fn describe_range(&self) -> String {
         let [low, high] = self.stretch_range;
-        match self.range_is_stated {
-            true => format!("λ = {low} … {high}{}", self.in_tests()),
-            false => format!("not stated; curves are drawn for λ = {low} … {high}"),
+        if self.range_is_stated {
+            format!("λ = {low} … {high}{}", self.in_tests())
+        } else {
+            format!("not stated; curves are drawn for λ = {low} … {high}")
         }
     }
 

@@ -24,21 +24,7 @@ pub(super) struct Draft {
 }
 
 impl Draft {
-    /// A law without parameters.
-    pub fn of(law: &'static Law) -> Self {
-        Self {
-            law,
-            title: String::new(),
-            density: None,
-            parameters: Vec::new(),
-            convention: None,
-            computed: Vec::new(),
-            volume: None,
-            volume_energy: None,
-        }
-    }
-
-    /// The same with a parameter in MPa.
+    /// The draft with one more parameter, in MPa.
     pub fn with(&self, key: &'static str, value: f64) -> Self {
         let mut more = self.clone();
         more.computed.push((key, format!("\"{value} MPa\"")));

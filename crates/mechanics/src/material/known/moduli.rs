@@ -129,9 +129,10 @@ fn admitted(ratio: f64, is_stated: bool) -> Result<(), Error> {
     if ratio == 0.5 || POISSON_RATIO.ends()[0] <= ratio && ratio <= POISSON_RATIO.ends()[1] {
         return Ok(());
     }
-    let message = match is_stated {
-        true => format!("a Poisson's ratio of {ratio} is not possible here"),
-        false => format!("the moduli contradict each other: Poisson's ratio would be {ratio:.5}"),
+    let message = if is_stated {
+        format!("a Poisson's ratio of {ratio} is not possible here")
+    } else {
+        format!("the moduli contradict each other: Poisson's ratio would be {ratio:.5}")
     };
     let hint = format!(
         "it lies between -0.9 and {LARGEST_POISSON_RATIO}, or is 0.5 for an incompressible material"

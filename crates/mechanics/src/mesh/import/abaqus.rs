@@ -7,8 +7,7 @@
 
 use std::collections::HashMap;
 
-use super::raw::Raw;
-use super::unreadable::Unreadable;
+use super::raw::{Raw, Unreadable};
 use crate::mesh::cell_shape::CellShape;
 
 /// What the lines below a keyword hold.

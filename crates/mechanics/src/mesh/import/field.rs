@@ -3,8 +3,7 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use super::raw::{Raw, Step, read_text};
-use super::unreadable::Unreadable;
+use super::raw::{Raw, Step, Unreadable, read_text};
 use super::{frd, gmsh, pvd, vtk};
 use crate::mesh::cells::Mesh;
 use crate::units::{self, Dimension};

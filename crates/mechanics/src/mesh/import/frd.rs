@@ -15,8 +15,7 @@
 
 use std::collections::HashMap;
 
-use super::raw::Raw;
-use super::unreadable::Unreadable;
+use super::raw::{Raw, Unreadable};
 use crate::mesh::cell_shape::CellShape;
 
 /// A file, before a step is chosen.

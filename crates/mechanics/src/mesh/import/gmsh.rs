@@ -3,8 +3,7 @@
 use std::collections::HashMap;
 use std::str::{FromStr, SplitWhitespace};
 
-use super::raw::{BINARY, Displacements, Raw, Step};
-use super::unreadable::Unreadable;
+use super::raw::{BINARY, Displacements, Raw, Step, Unreadable};
 use crate::mesh::cell_shape::CellShape;
 
 /// Reads the text of a file.

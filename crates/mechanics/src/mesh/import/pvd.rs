@@ -1,6 +1,6 @@
 //! ParaView's collections of files (`.pvd`).
 
-use super::unreadable::Unreadable;
+use super::raw::Unreadable;
 use super::vtu::attributes;
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};

@@ -4,12 +4,28 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::path::Path;
 
 use super::sides::name_sides;
-use super::unreadable::Unreadable;
 use crate::document::file;
 use crate::mesh::cell_shape::CellShape;
 use crate::mesh::cells::{Group, Mesh};
 use crate::mesh::geometry::{check_size, polygon_area};
 use crate::mesh::refine::key;
+
+/// What a file of another program holds that cannot be read, said of the file: "is cut off".
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct Unreadable(String);
+
+impl From<String> for Unreadable {
+    fn from(reason: String) -> Self {
+        Self(reason)
+    }
+}
+
+impl From<&str> for Unreadable {
+    fn from(reason: &str) -> Self {
+        Self(reason.to_owned())
+    }
+}
 
 /// Displacements by the file's own number of the node.
 pub type Displacements = HashMap<u64, [f64; 2]>;

@@ -1,7 +1,6 @@
 //! VTK's unstructured grids.
 
-use super::raw::Raw;
-use super::unreadable::Unreadable;
+use super::raw::{Raw, Unreadable};
 use crate::mesh::cell_shape::CellShape;
 
 /// Cell arrays in which meshio and Gmsh keep the numbers of physical groups.

@@ -7,8 +7,7 @@ use vtkio::model::{
     Attribute, DataSet, IOBuffer, Piece, UnstructuredGridPiece, VertexNumbers, Vtk,
 };
 
-use super::raw::{Raw, read_bytes};
-use super::unreadable::Unreadable;
+use super::raw::{Raw, Unreadable, read_bytes};
 use super::unstructured::{Arrays, CUT_OFF, UnstructuredGrid};
 use super::vtu;
 

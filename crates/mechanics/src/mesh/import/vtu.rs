@@ -20,7 +20,7 @@ use super::unstructured::{CUT_OFF, UnstructuredGrid};
 
 mod decode;
 
-use super::unreadable::Unreadable;
+use super::raw::Unreadable;
 use decode::{Header, Numbers, decode_base64, inflate, width};
 
 /// Points and cells that are read at most.

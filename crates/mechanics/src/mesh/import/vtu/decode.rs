@@ -2,7 +2,7 @@
 
 use std::io::Read;
 
-use super::super::unreadable::Unreadable;
+use super::super::raw::Unreadable;
 use crate::document::binary;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
