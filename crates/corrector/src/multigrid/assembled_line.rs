@@ -71,32 +71,26 @@ struct Beside<'a> {
 }
 
 impl<'a> Beside<'a> {
-    /// A number of the cells below and above each node, to the left; of the cells beside node j, cell j lies below it
-    /// and cell j + 1 above it.
+    /// A number of the four cells around each node: below and above it on the left, then on the right. Of the cells beside
+    /// node j, cell j lies below it and cell j + 1 above it.
     #[inline(always)]
-    fn left(&self, k: usize) -> (&'a [f32], &'a [f32]) {
-        (
-            &self.left.0[k][..self.nodes],
-            &self.left.0[k][1..=self.nodes],
-        )
+    fn around(&self, k: usize) -> [&'a [f32]; 4] {
+        let (left, right) = (&self.left.0[k], &self.right.0[k]);
+        [
+            &left[..self.nodes],
+            &left[1..=self.nodes],
+            &right[..self.nodes],
+            &right[1..=self.nodes],
+        ]
     }
 
-    /// The same to the right.
-    #[inline(always)]
-    fn right(&self, k: usize) -> (&'a [f32], &'a [f32]) {
-        (
-            &self.right.0[k][..self.nodes],
-            &self.right.0[k][1..=self.nodes],
-        )
-    }
-
-    /// Own block, symmetric: Σ (P + Q)/3 + s (R + Rᵀ), s = sx sy.
+    /// The block of a node with itself, symmetric: Σ (P + Q)/3 + s (R + Rᵀ), s = sx sy.
     #[inline(always)]
     fn diagonal(&self, [p, q, r, t]: [usize; 4], out: &mut [f32]) {
-        let ((pa, pb), (pc, pd)) = (self.left(p), self.right(p));
-        let ((qa, qb), (qc, qd)) = (self.left(q), self.right(q));
-        let ((ra, rb), (rc, rd)) = (self.left(r), self.right(r));
-        let ((ta, tb), (tc, td)) = (self.left(t), self.right(t));
+        let [pa, pb, pc, pd] = self.around(p);
+        let [qa, qb, qc, qd] = self.around(q);
+        let [ra, rb, rc, rd] = self.around(r);
+        let [ta, tb, tc, td] = self.around(t);
         for j in 0..self.nodes {
             let both = (pa[j] + pb[j]) + (pc[j] + pd[j]) + (qa[j] + qb[j]) + (qc[j] + qd[j]);
             let mixed = (ra[j] - rb[j]) - (rc[j] - rd[j]) + ((ta[j] - tb[j]) - (tc[j] - td[j]));
@@ -107,10 +101,10 @@ impl<'a> Beside<'a> {
     /// N: P/6 − Q/3, and −R + Rᵀ of the cell to the right, R − Rᵀ of that to the left.
     #[inline(always)]
     fn north(&self, [p, q, r, t]: [usize; 4], out: &mut [f32]) {
-        let ((_, pb), (_, pd)) = (self.left(p), self.right(p));
-        let ((_, qb), (_, qd)) = (self.left(q), self.right(q));
-        let ((_, rb), (_, rd)) = (self.left(r), self.right(r));
-        let ((_, tb), (_, td)) = (self.left(t), self.right(t));
+        let [_, pb, _, pd] = self.around(p);
+        let [_, qb, _, qd] = self.around(q);
+        let [_, rb, _, rd] = self.around(r);
+        let [_, tb, _, td] = self.around(t);
         for j in 0..self.nodes {
             let mixed = (rb[j] - tb[j]) - (rd[j] - td[j]);
             out[j] = SIXTH * (pb[j] + pd[j]) - THIRD * (qb[j] + qd[j]) + mixed;
@@ -120,8 +114,8 @@ impl<'a> Beside<'a> {
     /// E: −P/3 + Q/6, and R − Rᵀ of the cell above, −R + Rᵀ of that below.
     #[inline(always)]
     fn east(&self, [p, q, r, t]: [usize; 4], out: &mut [f32]) {
-        let ((pc, pd), (qc, qd)) = (self.right(p), self.right(q));
-        let ((rc, rd), (tc, td)) = (self.right(r), self.right(t));
+        let [[_, _, pc, pd], [_, _, qc, qd]] = [p, q].map(|k| self.around(k));
+        let [[_, _, rc, rd], [_, _, tc, td]] = [r, t].map(|k| self.around(k));
         for j in 0..self.nodes {
             let mixed = (rd[j] - td[j]) - (rc[j] - tc[j]);
             out[j] = SIXTH * (qc[j] + qd[j]) - THIRD * (pc[j] + pd[j]) + mixed;
@@ -132,11 +126,8 @@ impl<'a> Beside<'a> {
     #[inline(always)]
     fn corner(&self, numbers: [usize; 4], above: bool, out: &mut [f32]) {
         let pick = |k: usize| {
-            if above {
-                self.right(k).1
-            } else {
-                self.right(k).0
-            }
+            let [.., below, over] = self.around(k);
+            if above { over } else { below }
         };
         let [p, q, r, t] = numbers.map(pick);
         let sign = if above { -1.0 } else { 1.0 };
@@ -146,7 +137,7 @@ impl<'a> Beside<'a> {
     }
 }
 
-/// The inverse of the own block of each node, behind the blocks.
+/// The inverse of the block of each node with itself, behind the blocks.
 #[inline(always)]
 fn invert(target: &mut [f32], stride: usize, nodes: usize) {
     let (blocks, inverses) = target.split_at_mut(INVERSE[0] * stride);

@@ -58,14 +58,17 @@ fn combine<S: Simd>(simd: S, [a, b]: [S::f32s; 2], [x, y]: [S::f32s; 2]) -> S::f
     simd.mul_add_e_f32s(b, y, simd.mul_f32s(a, x))
 }
 
-/// r − A x for a block A = [a b; c d].
+/// r − A x for a block A = [a b; c d] of a line, at the nodes of a vector that begins at a place, and x at those that begin at another one.
 #[inline(always)]
 fn subtract<S: Simd>(
     simd: S,
     r: [S::f32s; 2],
-    [a, b, c, d]: [S::f32s; 4],
-    x: [S::f32s; 2],
+    (line, block): (LineStencil, [usize; 4]),
+    x: Pair,
+    [node, neighbour]: [usize; 2],
 ) -> [S::f32s; 2] {
+    let [a, b, c, d] = line.block::<S>(block, node);
+    let x = load_pair::<S>(x, neighbour);
     [
         simd.sub_f32s(r[0], combine(simd, [a, b], x)),
         simd.sub_f32s(r[1], combine(simd, [c, d], x)),
@@ -81,43 +84,14 @@ fn subtract_beside<S: Simd>(
     [left, right]: [Pair; 2],
     position: usize,
 ) -> [S::f32s; 2] {
-    let middle = position + 1;
-    let r = subtract(
-        simd,
-        r,
-        current.block::<S>(EAST, middle),
-        load_pair::<S>(right, middle),
-    );
-    let r = subtract(
-        simd,
-        r,
-        current.block::<S>(NORTH_EAST, middle),
-        load_pair::<S>(right, position + 2),
-    );
-    let r = subtract(
-        simd,
-        r,
-        current.block::<S>(SOUTH_EAST, middle),
-        load_pair::<S>(right, position),
-    );
-    let r = subtract(
-        simd,
-        r,
-        before.block::<S>(transposed(EAST), middle),
-        load_pair::<S>(left, middle),
-    );
-    let r = subtract(
-        simd,
-        r,
-        before.block::<S>(NORTH_EAST, position),
-        load_pair::<S>(left, position),
-    );
-    subtract(
-        simd,
-        r,
-        before.block::<S>(SOUTH_EAST, position + 2),
-        load_pair::<S>(left, position + 2),
-    )
+    let (below, node, above) = (position, position + 1, position + 2);
+    let west = transposed(EAST);
+    let r = subtract(simd, r, (current, EAST), right, [node, node]);
+    let r = subtract(simd, r, (current, NORTH_EAST), right, [node, above]);
+    let r = subtract(simd, r, (current, SOUTH_EAST), right, [node, below]);
+    let r = subtract(simd, r, (before, west), left, [node, node]);
+    let r = subtract(simd, r, (before, NORTH_EAST), left, [below, below]);
+    subtract(simd, r, (before, SOUTH_EAST), left, [above, above])
 }
 
 /// r less the part of K x that comes from the neighbours on the line itself.
@@ -129,18 +103,10 @@ fn subtract_along<S: Simd>(
     x: Pair,
     position: usize,
 ) -> [S::f32s; 2] {
-    let r = subtract(
-        simd,
-        r,
-        current.block::<S>(NORTH, position + 1),
-        load_pair::<S>(x, position + 2),
-    );
-    subtract(
-        simd,
-        r,
-        current.block::<S>(transposed(NORTH), position),
-        load_pair::<S>(x, position),
-    )
+    let (below, node, above) = (position, position + 1, position + 2);
+    let south = transposed(NORTH);
+    let r = subtract(simd, r, (current, NORTH), x, [node, above]);
+    subtract(simd, r, (current, south), x, [below, below])
 }
 
 /// b − K x at the vector of nodes that begins at a place; `x` are the lines before, at and after.
@@ -155,8 +121,7 @@ pub fn residual<S: Simd>(
     let b = load_pair::<S>(b, position + 1);
     let r = subtract_beside(simd, b, [before, current], [left, right], position);
     let r = subtract_along(simd, r, current, middle, position);
-    let block = current.block::<S>(ITSELF, position + 1);
-    subtract(simd, r, block, load_pair::<S>(middle, position + 1))
+    subtract(simd, r, (current, ITSELF), middle, [position + 1; 2])
 }
 
 /// r = b − K x on a line.
@@ -199,7 +164,7 @@ pub struct SmoothLine<'a> {
 }
 
 /// One at the nodes of a colour, zero at the others, from a place that is even.
-pub const OWN: [[f32; VECTOR]; 2] = {
+pub const COLOURS: [[f32; VECTOR]; 2] = {
     let mut current = [[0.0; VECTOR]; 2];
     let mut position = 0;
     while position < VECTOR {
@@ -212,8 +177,8 @@ pub const OWN: [[f32; VECTOR]; 2] = {
 impl WithSimd for SmoothLine<'_> {
     type Output = ();
 
-    /// Both colours are solved for at all nodes and taken over at their own: twice the arithmetic, but in
-    /// vectors. Nodes of one colour are no neighbours.
+    /// Each colour is solved for at all nodes, and the result taken over at the nodes of that colour: twice the arithmetic,
+    /// but in vectors. Nodes of one colour are no neighbours.
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let nodes = self.x_x.len() - 2;
@@ -230,8 +195,8 @@ impl WithSimd for SmoothLine<'_> {
             store::<S>(g_y, position, y);
         }
         for colour in [self.first, 1 - self.first] {
-            let current = load::<S>(&OWN[colour], 0);
-            let other = load::<S>(&OWN[1 - colour], 0);
+            let current = load::<S>(&COLOURS[colour], 0);
+            let other = load::<S>(&COLOURS[1 - colour], 0);
             for position in (0..nodes).step_by(S::F32_LANES) {
                 let g = [load::<S>(g_x, position), load::<S>(g_y, position)];
                 let r = subtract_along(simd, g, self.current, [self.x_x, self.x_y], position);

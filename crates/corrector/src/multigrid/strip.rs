@@ -22,7 +22,7 @@ use std::ops::Range;
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
-use super::line::{LineStencil, OWN, residual, store};
+use super::line::{COLOURS, LineStencil, residual, store};
 use super::stencil::Stencil;
 use super::tridiagonal::{FACTOR, Factorise, LANES, PAIR, substitute};
 use super::vector::{Lines, Vector};
@@ -99,7 +99,7 @@ impl LineSmoother {
         across.any(|strip| strip.range.contains(&line))
     }
 
-    /// Forgets the factors: the operator is written anew.
+    /// Forgets the factors, because the operator is about to change.
     pub fn forget(&mut self) {
         self.factorised = false;
     }
@@ -275,7 +275,7 @@ impl Strip {
                         let correction_of_line =
                             &corrections[(2 * position + component) * LANES..][..LANES];
                         for ((x, correction), correction_of_line) in
-                            x.iter_mut().zip(correction_of_line).zip(&OWN[colour])
+                            x.iter_mut().zip(correction_of_line).zip(&COLOURS[colour])
                         {
                             *x += correction_of_line * correction;
                         }
