@@ -10,7 +10,7 @@
 //! | where cells are long | lines along their short sides in zebra order: lines along X replace the point smoother, lines along Y are added to it |
 //! | restriction | the transpose of the prolongation |
 //! | prolongation | linear between the coarser grid's nodes, whatever their number |
-//! | coarser operators | discretised anew on the coarser grid, not by products of matrices |
+//! | coarser operators | discretised on the coarser grid itself, not by products of matrices |
 //! | coarsest grid | sparse Cholesky factor |
 //!
 //! All sums run in an order that does not depend on the number of threads.

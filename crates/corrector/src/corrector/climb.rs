@@ -85,7 +85,7 @@ pub struct ClimbSolution {
     pub discretisation_error: f64,
     /// The corrections on the finest grid, one after the other, root mean square over the nodes in mm.
     pub corrections: Vec<f64>,
-    /// The way to the field.
+    /// How the climb came to the field.
     pub provenance: Provenance,
 }
 

@@ -59,7 +59,7 @@ pub struct Multipliers {
     pub values: Vec<f64>,
 }
 
-/// A field on the way from ū to u.
+/// A field of the iteration from ū to u.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Step {
     /// The field.

@@ -60,7 +60,7 @@ pub struct CorrectedState {
     pub steps: Vec<Step>,
     /// The multipliers, condition after condition.
     pub multipliers: Vec<Multipliers>,
-    /// The way of the climb to the field; `None` where the method was direct.
+    /// How the climb came to the field; `None` where the method was direct.
     pub provenance: Option<Provenance>,
 }
 
@@ -106,7 +106,7 @@ impl<'a> PlateCorrector<'a> {
         }
     }
 
-    /// The same after the plate has reached a corrected state, for a material that remembers it.
+    /// The corrector after the plate has reached a corrected state, for a material that remembers it.
     #[must_use]
     pub fn after(self, state: &State) -> Self {
         let mut history = state.history.clone();

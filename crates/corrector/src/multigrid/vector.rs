@@ -17,7 +17,7 @@ pub struct Lines {
 }
 
 impl Lines {
-    /// Places that are worked on in a line: its nodes, and as many zeros after them as make whole vectors.
+    /// Entries of a line that are computed: its nodes, and zeros after them up to a multiple of the vector length.
     pub fn padded(self) -> usize {
         self.nodes.next_multiple_of(VECTOR)
     }

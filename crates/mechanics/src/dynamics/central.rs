@@ -23,7 +23,7 @@ use crate::solve::vector::{gather, largest};
 /// Share of the longest stable step that is taken: at one half the energy of the fastest vibrations is accurate to a third.
 const SHARE: f64 = 0.5;
 
-/// Steps after which the longest stable one is computed anew.
+/// Number of steps after which the longest stable step is computed again.
 const AGE: usize = 64;
 
 /// The method of central differences.

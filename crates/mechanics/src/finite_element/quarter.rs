@@ -8,9 +8,9 @@
 //! ux(X, W − Y) = ux(X, Y)           uy(X, W − Y) = −uy(X, Y)
 //! ```
 //!
-//! and the quarter at the origin, with ux = s L/2 at X = L/2 and uy = 0 at Y = W/2, determines the whole. Fields found in this
-//! way are a first guess: Newton's method on the whole mesh begins with them, ends where they are in balance, and checks whether
-//! they are stable. Compressed plates may lose their symmetry, and take the path of the whole.
+//! and the quarter at the origin, with ux = s L/2 at X = L/2 and uy = 0 at Y = W/2, determines the full plate. Fields found in this
+//! way are a first guess: Newton's method on the full mesh begins with them, ends where they are in balance, and checks whether
+//! they are stable. Compressed plates may lose their symmetry, and take the path of the full plate.
 
 use std::sync::Arc;
 
@@ -32,9 +32,9 @@ pub struct Quarter {
     mesh: Mesh,
     energy: SheetEnergy,
     linear_solver: LinearSolver,
-    /// For each node of the whole mesh: the node of the quarter that it is or mirrors, and the axes along which it mirrors it.
+    /// For each node of the full mesh: the node of the quarter that it is or mirrors, and the axes along which it mirrors it.
     images: Vec<(usize, [bool; 2])>,
-    /// Length of the whole plate in mm.
+    /// Length of the full plate in mm.
     length: f64,
 }
 
@@ -83,7 +83,7 @@ impl Quarter {
         model.solved_by(self.linear_solver)
     }
 
-    /// The states of the whole plate at stretches, beginning with those of coarser elements where there are any;
+    /// The states of the full plate at stretches, beginning with those of coarser elements where there are any;
     /// `None` where one was not found in this way, or is not stable.
     pub fn states(
         &self,
@@ -120,7 +120,7 @@ impl Quarter {
         Some(states)
     }
 
-    /// The fields of the whole plate in mm/mm caused by a motion of the right grip along X at states; `None` where one of these is not symmetric.
+    /// The fields of the full plate in mm/mm caused by a motion of the right grip along X at states; `None` where one of these is not symmetric.
     pub fn influences(&self, states: &[State]) -> Option<Vec<Result<Vec<f64>, SolveFault>>> {
         let quarters: Option<Vec<State>> = states.iter().map(|state| self.folded(state)).collect();
         let influences = self
@@ -135,7 +135,7 @@ impl Quarter {
         Some(influences.map(|quarter| quarter.map(unfold)).collect())
     }
 
-    /// A field of the quarter on the whole plate, whose right grip has moved by `end`.
+    /// A field of the quarter on the full plate, whose right grip has moved by `end`.
     fn unfolded(&self, field: &[f64], end: f64) -> Vec<f64> {
         let of_node = |(node, [along, across]): &(usize, [bool; 2])| {
             let [x, y] = [field[2 * node], field[2 * node + 1]];

@@ -47,7 +47,7 @@ pub struct Card {
     pub parameters: Vec<Parameter>,
     /// Other entries of the law: key and choice.
     pub choices: Vec<(&'static str, String)>,
-    /// Mass density in tonne/mm³; `None` where the card does not say it.
+    /// Mass density in tonne/mm³; `None` where the card does not state it.
     pub density: Option<f64>,
     /// The viscous part; empty where the card does not state it.
     pub viscosity: ViscousMaterial,

@@ -33,7 +33,7 @@ const VARIABLES: [Variable; 5] = [
 #[derive(Clone, Debug)]
 pub struct EnergyOfInvariants(Expression);
 
-/// The same of C₁₁, C₁₂ and C₂₂: the directions of the sheet may differ.
+/// The energy by a formula of C₁₁, C₁₂ and C₂₂: the directions of the sheet may differ.
 #[derive(Clone, Debug)]
 pub struct EnergyOfStrains(Expression);
 

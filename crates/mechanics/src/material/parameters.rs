@@ -366,7 +366,7 @@ impl<'a> Parameters<'a> {
         self.finish_with(|_| None)
     }
 
-    /// The same with a remedy for an unknown key.
+    /// [`Self::finish`] with a remedy for an unknown key.
     pub fn finish_with(self, remedy: impl Fn(&str) -> Option<String>) -> CardEntries {
         if let Origin::Card(section) = &self.origin {
             section.unknown_keys_with(remedy);

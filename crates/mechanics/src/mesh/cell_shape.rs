@@ -180,7 +180,7 @@ impl CellShape {
         numbers.map(|number| self.edge(number)).collect()
     }
 
-    /// The same of one edge.
+    /// The nodes of one edge within the cell: its ends, then its middle.
     pub(super) fn edge(self, number: usize) -> Vec<usize> {
         let corners = self.corners();
         let mut nodes = vec![number, (number + 1) % corners];

@@ -16,7 +16,7 @@ impl Mesh {
         }
     }
 
-    /// The same for a point that is likely to be in some cell.
+    /// [`Self::locate`] for a point that is likely to be in some cell, which is tried first.
     pub(super) fn locate_near(&self, likely: usize, point: [f64; 2]) -> (usize, [f64; 2]) {
         let there = self.grid.is_none().then(|| self.within(likely, point));
         match there.flatten() {
@@ -37,7 +37,7 @@ impl Mesh {
         self.outside_of_cell(self.locate(point))
     }
 
-    /// The same as [`Self::locate`]; `None` where the point lies farther outside than so many sizes of its nearest cell.
+    /// [`Self::locate`], or `None` where the point lies farther outside than so many sizes of its nearest cell.
     pub fn locate_within(&self, point: [f64; 2], most: f64) -> Option<(usize, [f64; 2])> {
         let nearest = self.locate(point);
         (self.outside_of_cell(nearest) <= most).then_some(nearest)

@@ -15,7 +15,7 @@ impl Neighbours {
         Self(across)
     }
 
-    /// The cell beyond an edge of a cell; `None` on the boundary.
+    /// The cell on the other side of an edge of a cell; `None` on the boundary.
     pub fn across(&self, cell: usize, edge: usize) -> Option<usize> {
         self.0[cell][edge]
     }

@@ -63,7 +63,7 @@ pub struct OutlineOfPoints {
     pub roughness: f64,
     /// Whether the points lie irregularly, as where many of a grid are lost.
     pub is_scattered: bool,
-    /// The reasons in words why the lines may not be those of the specimen.
+    /// The reasons why the lines may not be those of the specimen.
     pub doubts: Vec<String>,
 }
 

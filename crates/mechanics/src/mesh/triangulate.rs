@@ -73,7 +73,7 @@ pub fn fill(points: &[[f64; 2]], edges: &[[usize; 2]]) -> (Vec<[f64; 2]>, Vec<[u
     )
 }
 
-/// The same triangle, beginning at its first point.
+/// A triangle, turned so that it begins at its point with the smallest number.
 fn first_least(mut triangle: [usize; 3]) -> [usize; 3] {
     let least = (0..3).min_by_key(|corner| triangle[*corner]).unwrap_or(0);
     triangle.rotate_left(least);

@@ -58,7 +58,7 @@ pub struct Balance {
     pub moment: f64,
     /// The sum of the magnitudes of all forces of the supports in N, or of all loads where that is larger.
     pub largest_force: f64,
-    /// The same sum times half the diagonal of the body, in N·mm.
+    /// `largest_force` times half the diagonal of the body, in N·mm.
     pub largest_moment: f64,
 }
 

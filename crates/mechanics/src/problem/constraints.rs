@@ -60,7 +60,7 @@ impl Support {
     }
 }
 
-/// Why a group does not suit its support, in words that follow the group's name.
+/// Why a group does not suit its support, as a predicate that follows the group's name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 enum SupportMisfit {
     #[error(
@@ -164,7 +164,7 @@ impl Constraints {
         Ok(all)
     }
 
-    /// The same without the nodes that slide along inclined lines, which other supports may hold too.
+    /// The effects of supports without the nodes that slide along inclined lines, which other supports may hold too.
     pub fn each(mesh: &Mesh, supports: &[(String, Support)]) -> Result<Self, Diagnostic> {
         let mut all = Self::default();
         for (name, support) in supports {

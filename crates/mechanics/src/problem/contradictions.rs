@@ -120,7 +120,7 @@ fn tell(
     Diagnostic::error("support", message).hint(hint)
 }
 
-/// Describes a support in a few words.
+/// Describes a support.
 fn describe(support: &Support) -> String {
     let axes = |values: [Option<String>; 2]| {
         let named = ["x", "y"].iter().zip(values);

@@ -75,7 +75,7 @@ impl DeformedSheet {
         }
     }
 
-    /// The same sheet after some displacement fields, which a softening material remembers. Without them it is loaded for the first time.
+    /// The sheet after some displacement fields, which a softening material remembers. Without them it is loaded for the first time.
     #[must_use]
     pub fn after(self, past: Vec<Vec<f64>>) -> Self {
         Self { past, ..self }

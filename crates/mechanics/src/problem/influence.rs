@@ -32,7 +32,7 @@ impl Model<'_> {
         one.swap_remove(0)
     }
 
-    /// The same at each of some states, whose tangents have one pattern; in parallel on the available threads, where factors are small.
+    /// [`Self::influence`] at each of some states, whose tangents have one pattern; in parallel on the available threads, where factors are small.
     ///
     /// # Panics
     /// As [`Self::influence`].

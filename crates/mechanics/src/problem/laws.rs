@@ -98,7 +98,7 @@ impl CellLaws {
         &*self.laws[usize::from(self.number(cell))]
     }
 
-    /// The same with another law of the cells that belong to no region.
+    /// The laws with another one of the cells that belong to no region.
     #[must_use]
     pub fn with_law(&self, law: Arc<dyn HyperelasticLaw>) -> Self {
         let mut other = self.clone();

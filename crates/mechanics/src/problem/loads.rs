@@ -81,7 +81,7 @@ impl Loads {
         self.pressures.close(&is_held);
     }
 
-    /// The same loads without the forces on grips.
+    /// The loads without the forces on grips.
     pub fn without_pulls(&self) -> Self {
         let mut loads = Self {
             pulls: Vec::new(),

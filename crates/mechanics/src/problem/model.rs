@@ -320,7 +320,7 @@ impl Loading for Model<'_> {
         let known = near(factor).and_then(|field| {
             let mut guess = field.clone();
             if let Some(state) = previous {
-                // From a state on the way, at which nothing is known, no guess has led to the end.
+                // From an intermediate state, at which no field is known, no guess has led to the load factor.
                 let before = near(state.factor)?;
                 let ratio = factor / state.factor;
                 add_scaled(&mut guess, ratio, &state.displacement);

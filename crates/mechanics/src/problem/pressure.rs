@@ -78,7 +78,7 @@ impl Pressures {
         }
     }
 
-    /// Finds the ends, once all edges are known; `is_held` says whether an unknown is.
+    /// Finds the ends, once all edges are known; `is_held` tells whether an unknown is held.
     pub fn close(&mut self, is_held: &dyn Fn(usize) -> bool) {
         let mut sums: BTreeMap<usize, (f64, [f64; 2])> = BTreeMap::new();
         let most = self.edges.iter().map(|edge| edge.line_load.abs());

@@ -97,7 +97,7 @@ impl SheetEnergy {
         energy.complete(mesh.nodes.clone())
     }
 
-    /// The same energy with the places of its nodes: large systems are eliminated in an order by places.
+    /// The energy with the positions of its nodes, by which large systems are ordered for elimination.
     #[must_use]
     pub fn complete(mut self, nodes: Vec<[f64; 2]>) -> Self {
         self.table_of.shrink_to_fit();

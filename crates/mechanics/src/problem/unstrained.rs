@@ -15,7 +15,7 @@ const ROUNDING: f64 = 1e-9;
 type Prescribed = ([f64; 2], usize, f64);
 
 impl BoundaryProblem {
-    /// What is to be said where nothing strains the sheet, so that all forces are zero and any comparison passes: an error where its supports
+    /// The fault or warning where nothing strains the sheet, so that all forces are zero and any comparison passes: an error where its supports
     /// move it, a warning where it stays at rest; `None` where something does.
     ///
     /// # Errors

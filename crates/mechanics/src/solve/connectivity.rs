@@ -79,7 +79,7 @@ impl Connectivity {
         self.with_places(Arc::clone(&other.nodes))
     }
 
-    /// The same elements, of which all copies share the memory.
+    /// The elements with memory that all copies share.
     ///
     /// # Panics
     /// When the elements of a copy are to be shared again.

@@ -24,7 +24,7 @@ const NEGLIGIBLE: f64 = 1e-4;
 /// The share of the relative residual before a step that may remain after it if its tangent is to be used again.
 const SERVES: f64 = 0.05;
 
-/// The same of the tangent of another state nearby: three such steps cost less than a factor.
+/// The share that may remain after a step with the tangent of another state nearby: three such steps cost less than a factor.
 const SERVES_NEARBY: f64 = 0.3;
 
 /// Relative residual below which the tangent no longer changes its definiteness.
@@ -37,7 +37,7 @@ const SADDLE: f64 = 1e-5;
 /// Relative residual at which a stagnating iteration counts as converged by rounding.
 const ROUNDING_FLOOR: f64 = 1e-11;
 
-/// A potential, the unknowns on their way to its minimum, and ∂Π/∂u there.
+/// A potential, the unknowns of the iteration to its minimum, and ∂Π/∂u there.
 struct Descent<'a> {
     potential: &'a dyn Potential,
     u: &'a mut [f64],
@@ -84,7 +84,7 @@ impl Newton {
         Self::with_solver(potential, fixed, LinearSolver::Automatic)
     }
 
-    /// The same with a linear solver.
+    /// [`Self::new`] with a linear solver.
     ///
     /// # Errors
     /// As [`Self::new`].

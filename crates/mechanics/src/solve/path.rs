@@ -61,7 +61,7 @@ const EASY: usize = 6;
 /// approached by shorter steps: halved where they fail, doubled after easy ones. Load factors that a journal has kept
 /// are not solved again.
 ///
-/// The memory of a body changes only at the given load factors: on the way to one of them the body has the history of
+/// The memory of a body changes only at the given load factors: between them the body has the history of
 /// the one before, and results do not depend on the intermediate steps.
 ///
 /// # Errors
@@ -137,7 +137,7 @@ struct StepEnd {
     state: State,
     /// Whether it is farther from its first guess than the guess is from the state before: the body has snapped to another branch.
     is_far: bool,
-    /// Whether it is not far, and all tangents on the way were positive definite: otherwise there are other branches.
+    /// Whether it is not far, and all tangents of the step were positive definite: otherwise there are other branches.
     is_sure: bool,
 }
 

@@ -75,7 +75,7 @@ pub trait Potential: Sync {
         Vec::new()
     }
 
-    /// The state of an element that is unstable by itself at its own unknowns `u`, in words; `None` where it is
+    /// The state of an element that is unstable by itself at its own unknowns `u`, described; `None` where it is
     /// stable, or where only the sum has a stability.
     fn instability(&self, _element: usize, _u: &[f64]) -> Option<String> {
         None

@@ -80,7 +80,7 @@ impl CorrectionHistory {
         last * (MARGIN * rate / (1.0 - rate)).max(SMALLEST_REMAINDER)
     }
 
-    /// The factor by which the corrections fall: on the whole or at last, whichever is slower.
+    /// The factor by which the corrections fall: on average or in the last step, whichever is slower.
     fn rate(&self) -> f64 {
         let [.., before, last] = self.corrections[..] else {
             return 0.0;

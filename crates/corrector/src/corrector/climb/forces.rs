@@ -118,7 +118,7 @@ impl Columns {
     }
 }
 
-/// Elements with so many nodes along each axis that are evaluated together: whole vectors.
+/// Elements with so many nodes along each axis that are evaluated together: a multiple of the vector length.
 const fn block(nodes: usize) -> usize {
     let elements = CAPACITY / (nodes * nodes) / VECTOR * VECTOR;
     assert!(elements > 0);
@@ -243,7 +243,7 @@ impl<const NODES: usize> Workspace<NODES> {
         }
     }
 
-    /// Repeats the last of some elements to fill a whole vector.
+    /// Repeats the last of some elements up to a multiple of the vector length.
     fn pad(&mut self, count: usize, padded: usize) {
         let displacements = self.displacements.chunks_exact_mut(Self::BLOCK);
         let kinds = displacements.take(2 * NODES * NODES);

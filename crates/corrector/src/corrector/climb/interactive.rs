@@ -156,7 +156,7 @@ impl<'a> Interactive<'a> {
         Ok(ClimbSolution::near(field, force, error, reached))
     }
 
-    /// Moves the grips by a share of the remaining way, and the nodes between them in proportion.
+    /// Moves the grips by a share of the remaining motion, and the nodes between them in proportion.
     fn impose(&self, grips: Grips, share: f64, field: &mut Field) {
         let grid = self.climb.grid();
         let [length, width] = self.climb.problem.size;

@@ -31,7 +31,7 @@ pub fn between_nodes(scheme: DifferenceScheme, mesh: &Mesh, displacement: &[f64]
 }
 
 impl Grid {
-    /// The grid, and a field on it, whose elements are cells of meshes: with further lines half way between its own where they are cubic.
+    /// The grid, and a field on it, whose elements are cells of meshes: with further lines half way between the grid's where they are cubic.
     fn with_cells(&self, field: &Field) -> (Self, Field) {
         if !self.has_cubics() {
             return (self.clone(), field.clone());

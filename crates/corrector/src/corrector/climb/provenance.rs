@@ -41,7 +41,7 @@ pub struct Provenance {
 }
 
 impl Provenance {
-    /// The way from one start on a grid with so many cells.
+    /// A climb from one start on a grid with so many cells.
     pub(super) fn from_start(start: Start, cells: [usize; 2]) -> Self {
         Self {
             start,

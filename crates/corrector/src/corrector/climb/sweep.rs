@@ -7,7 +7,7 @@ use crate::multigrid::Lines;
 /// Nodes that one thread handles at a time, about: their numbers stay in its nearest caches.
 const NODES_AT_ONCE: usize = 2_048;
 
-/// A part of a grid's nodes: whole lines.
+/// A part of a grid's nodes: some of its lines.
 #[derive(Clone, Copy, Debug)]
 pub struct Part {
     /// The number of the first node among all nodes.

@@ -46,7 +46,7 @@ pub struct CorrectionEnd {
     pub corrected: Box<CorrectedMotion>,
 }
 
-/// Consecutive instants on the way.
+/// Consecutive instants of a motion that is being corrected.
 struct Window {
     /// The number of the first instant, which is known.
     first: usize,

@@ -46,7 +46,7 @@ impl ParameterUncertainty {
         Some(Self { keys, covariance })
     }
 
-    /// The lines of a card that say it: keys with their lists.
+    /// The lines of a card that state it: keys with their lists.
     pub fn lines(&self) -> [(&'static str, String); 3] {
         let count = self.keys.len();
         let deviation = |row: usize| self.covariance[(row, row)].sqrt();

@@ -8,7 +8,7 @@ use crate::material::parameters::{OffsetTreatment, StrainMeasure, StressMeasure}
 /// The stretches that curves are drawn for where a card states no range.
 const DRAWN: [f64; 2] = [0.5, 3.0];
 
-/// What the texts begin with that say nothing.
+/// Beginnings of texts without content.
 const UNSTATED: &str = "not stated";
 
 /// What a card has to state before it is shared: table, key, and an example of its value.
@@ -85,7 +85,7 @@ impl Card {
         }
     }
 
-    /// The range of stretches in words: `λ = 1 … 2 (uniaxial test)`.
+    /// Describes the range of stretches: `λ = 1 … 2 (uniaxial test)`.
     pub fn describe_range(&self) -> String {
         let [low, high] = self.stretch_range;
         if self.range_is_stated {
@@ -95,7 +95,7 @@ impl Card {
         }
     }
 
-    /// Whether the card may be used at the stretch `lambda`; a card without a range does not say it may not.
+    /// Whether the card may be used at the stretch `lambda`; a card without a range may be used at any.
     pub fn covers(&self, lambda: f64) -> bool {
         let [low, high] = self.stretch_range;
         !self.range_is_stated || (low..=high * (1.0 + 1e-12)).contains(&lambda)

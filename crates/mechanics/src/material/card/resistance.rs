@@ -99,7 +99,7 @@ impl Card {
         changes.max_by(|a, b| a[1].abs().total_cmp(&b[1].abs()))
     }
 
-    /// The sheet in words: `an incompressible material in plane stress`.
+    /// Describes the sheet: `an incompressible material in plane stress`.
     pub fn describe_sheet(&self) -> String {
         let material = match (self.law_name == SWELLING, self.bulk_modulus()) {
             (true, _) => "a gel that exchanges solvent".to_owned(),

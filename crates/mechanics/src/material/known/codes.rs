@@ -94,7 +94,7 @@ fn names(code: Code, law: &str) -> Names {
 }
 
 impl Known {
-    /// The same with parameters by their names in another code, whose convention and volume energy they bring along.
+    /// Adds parameters by their names in another code, whose convention and volume energy they bring along.
     ///
     /// # Errors
     /// [`Error::Input`] where the code has no such law or parameter.

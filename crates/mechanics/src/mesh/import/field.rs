@@ -8,7 +8,7 @@ use super::{frd, gmsh, pvd, vtk};
 use crate::mesh::cells::Mesh;
 use crate::units::{self, Dimension};
 
-/// Contents of a file that cannot be read as a displacement field, in words that follow the file's name.
+/// Contents of a file that cannot be read as a displacement field, as a predicate that follows the file's name.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{reason}")]
 pub struct ImportFault {

@@ -10,7 +10,7 @@ use crate::mesh::cells::{Group, Mesh};
 use crate::mesh::geometry::{check_size, polygon_area};
 use crate::mesh::refine::key;
 
-/// What a file of another program holds that cannot be read, said of the file: "is cut off".
+/// Why the contents of a file of another program cannot be read, as a predicate of the file: "is cut off".
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 pub struct Unreadable(String);
@@ -30,7 +30,7 @@ impl From<&str> for Unreadable {
 /// Displacements by the file's own number of the node.
 pub type Displacements = HashMap<u64, [f64; 2]>;
 
-/// A step of a field: its time, where the file says it, and its displacements.
+/// A step of a field: its time, where the file states it, and its displacements.
 pub type Step = (Option<f64>, Displacements);
 
 /// What a file holds, before it is a flat mesh: places in the file's unit, and elements by their kinds.

@@ -34,7 +34,7 @@ impl<const R: usize, const C: usize, T> Blocks<R, C, T> {
 }
 
 impl<const R: usize, const C: usize> Blocks<R, C> {
-    /// The same numbers in single precision.
+    /// The matrix in single precision.
     pub fn rounded(&self) -> Blocks<R, C, f32> {
         Blocks {
             starts: self.starts.clone(),
