@@ -19,7 +19,7 @@ pub struct Dependence {
 const SHIFT: f64 = 1e-9;
 const VANISHING: f64 = 1e-7;
 /// Entries below this share of the largest do not take part.
-const TAKING_PART: f64 = 0.05;
+const SMALLEST_ENTRY: f64 = 0.05;
 
 /// Looks for dependent rows of `jacobian` with the values c = `values` at a field whose entries are of the
 /// size `field_size`.
@@ -47,7 +47,7 @@ pub fn find(jacobian: &SparseRows, values: &[f64], field_size: f64) -> Option<De
     }
     let most = largest(&combination);
     let mut rows: Vec<usize> = (0..combination.len())
-        .filter(|row| combination[*row].abs() > TAKING_PART * most)
+        .filter(|row| combination[*row].abs() > SMALLEST_ENTRY * most)
         .collect();
     rows.sort_by(|a, b| combination[*b].abs().total_cmp(&combination[*a].abs()));
     let sum: f64 = rows

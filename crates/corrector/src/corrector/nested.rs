@@ -64,7 +64,7 @@ const FINEST: NewtonSettings = NewtonSettings {
 };
 
 /// Iterations after which a start was no good guess: load steps from rest take about as many.
-const FROM_A_GUESS: usize = 8;
+const MOST_FROM_GUESS: usize = 8;
 
 /// A corrected field on the finest mesh.
 #[derive(Clone, Debug)]
@@ -175,7 +175,7 @@ impl<'a> NestedMeshes<'a> {
     ) -> Result<State, Error> {
         let settings = self.settings(level);
         let near = NewtonSettings {
-            max_iterations: FROM_A_GUESS,
+            max_iterations: MOST_FROM_GUESS,
             ..settings
         };
         let corrected = correct_without_multipliers(model, start, Stage::first(factor), near);

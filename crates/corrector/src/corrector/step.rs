@@ -59,7 +59,7 @@ impl<'a> Merit<'a> {
 }
 
 /// How often a long step is moved back onto the conditions before it is shortened.
-const RETURNS: usize = 4;
+const MOST_RETURNS: usize = 4;
 
 impl Corrector<'_> {
     /// The next field, and the share of the linearised step that led there.
@@ -110,7 +110,7 @@ impl Corrector<'_> {
     ) -> Option<Vec<f64>> {
         let mut field = moved(before, length, step);
         let mut values = self.values(&field).ok()?;
-        for _ in 0..RETURNS {
+        for _ in 0..MOST_RETURNS {
             if merit.accepts(&field, &values) {
                 return Some(field);
             }

@@ -36,7 +36,7 @@ impl NullaryFnOnce for AssembleLine<'_> {
             stride,
             nodes,
         } = self;
-        let adjacent = Beside { left, right, nodes };
+        let adjacent = AdjacentColumns { left, right, nodes };
         let mut arrays = target.chunks_exact_mut(stride);
         let mut next = || &mut arrays.next().expect("an array a coefficient")[1..=nodes];
         for numbers in SYMMETRIC {
@@ -64,13 +64,13 @@ const THIRD: f32 = 1.0 / 3.0;
 const SIXTH: f32 = 1.0 / 6.0;
 
 /// The columns of cells on both sides of a line.
-struct Beside<'a> {
+struct AdjacentColumns<'a> {
     left: &'a CellStiffness,
     right: &'a CellStiffness,
     nodes: usize,
 }
 
-impl<'a> Beside<'a> {
+impl<'a> AdjacentColumns<'a> {
     /// A number of the four cells around each node: below and above it on the left, then on the right. Of the cells beside
     /// node j, cell j lies below it and cell j + 1 above it.
     #[inline(always)]

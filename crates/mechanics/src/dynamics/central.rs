@@ -24,7 +24,7 @@ use crate::solve::vector::{gather, largest};
 const SHARE: f64 = 0.5;
 
 /// Number of steps after which the longest stable step is computed again.
-const AGE: usize = 64;
+const STEPS_BETWEEN_ESTIMATES: usize = 64;
 
 /// The method of central differences.
 #[derive(Default)]
@@ -49,7 +49,7 @@ impl Stepper for Central {
 
     fn longest(&mut self, motion: &Motion, at: &BodyState) -> Result<Option<f64>, SolveFault> {
         if let Some((longest, age)) = self.longest
-            && age < AGE
+            && age < STEPS_BETWEEN_ESTIMATES
         {
             return Ok(Some(longest));
         }

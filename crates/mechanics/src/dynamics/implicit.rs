@@ -56,7 +56,7 @@ pub(super) struct Implicit {
 const ITERATIONS: usize = 25;
 
 /// A factor is renewed when the residual after an iteration exceeds this share of the one before: a new one costs as much as five iterations.
-const SLOW: f64 = 0.5;
+const SLOW_CONVERGENCE: f64 = 0.5;
 
 /// Relative residual at which an iteration that stagnates has converged by rounding.
 const ROUNDING_FLOOR: f64 = 1e-9;
@@ -209,7 +209,7 @@ impl Implicit {
             if relative.is_nan() || (stagnant && relative > 2.0 * last && iteration > 2) {
                 break;
             }
-            fresh = !self.has_factor(step) || relative > SLOW * last;
+            fresh = !self.has_factor(step) || relative > SLOW_CONVERGENCE * last;
             if fresh {
                 self.factorise(motion, &after, step)?;
             }

@@ -71,10 +71,10 @@ impl MotionEnd {
 const RUN: usize = 64;
 
 /// Runs after which a step may grow, the first time.
-const PATIENCE: usize = 8;
+const RUNS_BEFORE_GROWTH: usize = 8;
 
 /// Share of the largest energy that a motion may gain or lose without work, since it started or was last halved, before it counts as unstable.
-const ASTRAY: f64 = 0.05;
+const LARGEST_ENERGY_ERROR: f64 = 0.05;
 
 /// The shortest step, as a share of the first.
 const SHORTEST: f64 = 1.0 / 4096.0;
@@ -183,7 +183,7 @@ impl Pace {
             automatic: step == Step::Automatic,
             current: f64::INFINITY,
             runs: 0,
-            patience: PATIENCE,
+            patience: RUNS_BEFORE_GROWTH,
             grown: false,
             from: EnergyBalance::default(),
         }
@@ -353,7 +353,7 @@ impl<'a> March<'a> {
         }
         let astray = self.astray(&at.energy, trust);
         let largest = at.energy.largest().max(start.energy.largest());
-        if astray.is_finite() && astray <= ASTRAY * largest {
+        if astray.is_finite() && astray <= LARGEST_ENERGY_ERROR * largest {
             return Ok(at);
         }
         Err(SolveFault::Explodes {

@@ -8,7 +8,7 @@ use crate::error::SolveFault;
 use crate::solve::{Assembly, Inadmissible};
 
 /// A time before the start in s.
-const BEFORE: f64 = -1.0;
+const BEFORE_START: f64 = -1.0;
 
 /// The forces of a state in N, on all unknowns.
 #[derive(Clone, Debug, Default)]
@@ -44,7 +44,7 @@ impl Motion<'_> {
             &mut start.velocity,
             &mut acceleration,
         ];
-        self.impose(0.0, BEFORE, imposed.map(|values| &mut values[..]));
+        self.impose(0.0, BEFORE_START, imposed.map(|values| &mut values[..]));
         let rest = vec![0.0; size];
         let past = if start.relaxed {
             &start.displacement

@@ -43,11 +43,11 @@ struct Polynomial {
 const MOST_LAYERS: usize = 4;
 
 /// Smallest pivot over the largest one at which nodes determine a polynomial.
-const DETERMINED: f64 = 1e-4;
+const SMALLEST_PIVOT: f64 = 1e-4;
 
 /// Weight of the misfit of nodes beyond the cells around a corner: enough to determine the polynomial. Larger ones would
 /// make a one-sided fit as wide as its patch.
-const FAR: f64 = 0.1;
+const FAR_WEIGHT: f64 = 0.1;
 
 /// The recovery on one mesh: the least-squares fit to any field.
 #[derive(Clone, Debug)]
@@ -252,7 +252,7 @@ impl<'a> Patches<'a> {
         let mut matrix = DMatrix::zeros(nodes.len(), count);
         for (row, node) in nodes.iter().enumerate() {
             let [x, y] = [0, 1].map(|axis| away(*node, axis) / scale[axis]);
-            weights[row] = if near.contains(node) { 1.0 } else { FAR };
+            weights[row] = if near.contains(node) { 1.0 } else { FAR_WEIGHT };
             let [x, y] = [x, y].map(|x| powers_and_slopes(x, 1.0));
             for (column, [i, j]) in monomials(degree).enumerate() {
                 matrix[(row, column)] = weights[row] * x[i][0] * y[j][0];
@@ -274,7 +274,7 @@ fn least_squares(matrix: DMatrix<f64>, weights: &DVector<f64>) -> Option<DMatrix
     let (mut values, upper) = (decomposition.q().transpose(), decomposition.unpack_r());
     let pivots = upper.diagonal();
     let [least, most] = [pivots.amin(), pivots.amax()];
-    if least < DETERMINED * most || least.is_nan() {
+    if least < SMALLEST_PIVOT * most || least.is_nan() {
         return None;
     }
     for (mut column, weight) in values.column_iter_mut().zip(weights) {

@@ -115,7 +115,7 @@ pub fn check_memory(law: &dyn HyperelasticLaw, what: &str) -> Result<(), Error> 
         Some(_) => {
             let message =
                 format!("the material softens, and {what} has no memory of its largest load");
-            Err(Error::input(message, WITHOUT))
+            Err(Error::input(message, NO_SOFTENING_ADVICE))
         }
     }
 }
@@ -163,7 +163,7 @@ impl StressAfter {
 }
 
 /// Advice where a material must not soften.
-pub const WITHOUT: &str =
+pub const NO_SOFTENING_ADVICE: &str =
     "leave out the card's `[softening]`: its law then describes the first loading";
 
 #[cfg(test)]

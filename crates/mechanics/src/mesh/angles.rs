@@ -42,11 +42,11 @@ impl Mesh {
 /// The angle on the left of a line that arrives along one vector and leaves along another.
 fn angle(before: [f64; 2], after: [f64; 2]) -> f64 {
     /// A turn to the left by nearly π would leave no sheet.
-    const BACK: f64 = 0.9999 * PI;
+    const LARGEST_TURN: f64 = 0.9999 * PI;
     let across = before[0] * after[1] - before[1] * after[0];
     let along = before[0] * after[0] + before[1] * after[1];
     match across.atan2(along) {
-        turn if turn > BACK => 2.0 * PI,
+        turn if turn > LARGEST_TURN => 2.0 * PI,
         turn => PI - turn,
     }
 }

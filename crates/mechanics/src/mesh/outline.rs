@@ -72,14 +72,14 @@ pub struct OutlineOfPoints {
 const SCATTERED: f64 = 0.87;
 
 /// Sides of polygons are straightened by so many times more and more, up to this share of the depth of dents.
-const ROUGHER: f64 = 1.6;
-const ROUGHEST: f64 = 0.9;
+const STRAIGHTENING_FACTOR: f64 = 1.6;
+const LARGEST_STRAIGHTENING: f64 = 0.9;
 
 /// Dents of the outer line no deeper than so many spacings are bridged.
-const DEEP: f64 = 1.05;
+const DEEPEST_BRIDGED: f64 = 1.05;
 
 /// Factor of the circles' radius for the outer line of scattered points.
-const WIDER: f64 = 1.6;
+const RADIUS_FACTOR: f64 = 1.6;
 
 impl Outline {
     /// The lines around points.
@@ -95,7 +95,7 @@ impl Outline {
             return Err(OutlineFault::TooFew(points.len()));
         }
         let (mut lines, spacing) = alpha_shape::lines(&points, 1.0)?;
-        let mut outline = Self::behind(&lines, spacing, DEEP * spacing)?;
+        let mut outline = Self::behind(&lines, spacing, DEEPEST_BRIDGED * spacing)?;
         let mut doubts = Vec::new();
         let regular = regularity(&points, outline.area());
         let is_scattered = regular < SCATTERED;
@@ -105,8 +105,12 @@ impl Outline {
                  dense grid: {regular:.2}, on a grid 1)"
             ));
             // Gaps at the edge are wider then; holes are found as usual.
-            let (wide_lines, _) = alpha_shape::lines(&points, WIDER)?;
-            let wide = Self::behind(&wide_lines, spacing, DEEP * WIDER * spacing)?;
+            let (wide_lines, _) = alpha_shape::lines(&points, RADIUS_FACTOR)?;
+            let wide = Self::behind(
+                &wide_lines,
+                spacing,
+                DEEPEST_BRIDGED * RADIUS_FACTOR * spacing,
+            )?;
             let wider = Self {
                 outer: wide.outer,
                 holes: outline.holes.clone(),
@@ -317,9 +321,9 @@ impl Outline {
 fn polygon_behind(line: &[[f64; 2]], deep: f64, spacing: f64) -> Option<Vec<[f64; 2]>> {
     let is_outer = polygon_area(line) > 0.0;
     let bridged = is_outer.then(|| envelope::without_dents(line, deep, spacing))?;
-    let next = |near: &f64| Some(ROUGHER * near);
+    let next = |near: &f64| Some(STRAIGHTENING_FACTOR * near);
     let nears = std::iter::successors(Some(STRAIGHT * spacing), next);
-    let mut nears = nears.take_while(|near| *near < ROUGHEST * deep);
+    let mut nears = nears.take_while(|near| *near < LARGEST_STRAIGHTENING * deep);
     nears.find_map(|near| envelope::polygonal(&bridged, [near, deep], spacing))
 }
 

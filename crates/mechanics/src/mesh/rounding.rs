@@ -22,14 +22,14 @@ use crate::error::Diagnostic;
 /// A turn between straight edges that may belong to a curve, in rad: up to an octagon's.
 const TURNS: std::ops::Range<f64> = 0.003..0.8;
 /// Straight edges represent a curve where so many nodes in a row turn alike.
-const ALIKE: usize = 3;
+const LEAST_TURNS: usize = 3;
 /// Turns per length of neighbouring nodes on a curve do not differ more than by this factor.
-const STEADY: f64 = 3.0;
+const LARGEST_TURN_RATIO: f64 = 3.0;
 /// Ratio of the turn between parabolas to the turns along them, up to which they are one curve.
 const SMOOTH: f64 = 0.4;
 
 /// A distance to the curve, relative to the edge's length, that is rounding.
-const NOTHING: f64 = 1e-10;
+const ROUNDING_ERROR: f64 = 1e-10;
 
 /// A part of the boundary that is drawn with straight edges where a curve may be meant.
 #[derive(Clone, Debug, PartialEq)]
@@ -101,7 +101,7 @@ impl Piece<'_> {
             2 => [even, odd],
             _ => [odd, even],
         })
-        .filter(|[a, b]| a.abs() + b.abs() > NOTHING * self.length())
+        .filter(|[a, b]| a.abs() + b.abs() > ROUNDING_ERROR * self.length())
     }
 
     /// The vector from the edge to the curve at s in mm.
@@ -280,9 +280,9 @@ fn chords(
     let mut alike = 1;
     for direction in directions {
         let (mut at, mut bend) = (piece, curvature(piece)?);
-        while let Some(to) = direction[at].filter(|_| alike < ALIKE) {
+        while let Some(to) = direction[at].filter(|_| alike < LEAST_TURNS) {
             let Some(other) = curvature(to) else { break };
-            if !(1.0 / STEADY..=STEADY).contains(&(other / bend)) {
+            if !(1.0 / LARGEST_TURN_RATIO..=LARGEST_TURN_RATIO).contains(&(other / bend)) {
                 break;
             }
             alike += 1;
@@ -292,7 +292,7 @@ fn chords(
     let (kink, after) = (kinks[piece]?, directions[0][piece]?);
     let lengths = [piece, after].map(|piece| pieces[piece].length());
     let share = kink / (lengths[0] + lengths[1]);
-    (alike >= ALIKE).then(|| lengths.map(|length| share * length))
+    (alike >= LEAST_TURNS).then(|| lengths.map(|length| share * length))
 }
 
 #[cfg(test)]

@@ -8,7 +8,7 @@ use super::interpolation::Place;
 use super::neighbours::Neighbours;
 
 /// A node of the boundary this far inside or outside of a cell that is not its own, in natural coordinates, lies on it.
-const ON: f64 = 0.02;
+const ON_CELL: f64 = 0.02;
 /// A place this far outside of a cell, in natural coordinates, is in it.
 const ROUNDING: f64 = 1e-9;
 
@@ -49,7 +49,7 @@ impl Mesh {
             return None;
         }
         let mut nodes = self.boundary().iter().flatten();
-        let is_seamed = nodes.any(|node| self.lies_on_others(*node, -ON));
+        let is_seamed = nodes.any(|node| self.lies_on_others(*node, -ON_CELL));
         is_seamed.then(|| self.neighbours())
     }
 

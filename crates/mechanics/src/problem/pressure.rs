@@ -26,7 +26,7 @@ use crate::mesh::{Group, Mesh};
 use crate::solve::{Connectivity, Evaluated, Local, Potential, SkewCoupling};
 
 /// Share of the line load at an end below which it counts as rounding of a zero sum.
-const NOTHING: f64 = 1e-12;
+const ROUNDING_ERROR: f64 = 1e-12;
 
 /// All pressures of a problem at load factor 1.
 #[derive(Clone, Debug, Default)]
@@ -92,7 +92,7 @@ impl Pressures {
         }
         let ends = sums
             .into_iter()
-            .filter(|(_, (sum, _))| sum.abs() > NOTHING * most);
+            .filter(|(_, (sum, _))| sum.abs() > ROUNDING_ERROR * most);
         self.ends = ends
             .map(|(x, (line_load, rest))| End {
                 unknowns: [x, x + 1],

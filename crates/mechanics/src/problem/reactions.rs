@@ -133,7 +133,7 @@ impl Reactions<'_> {
     /// body at rest.
     pub fn balance(&self) -> Balance {
         /// Forces of which rounding may be more than this share would be judged by rounding alone: they count as large as this limit.
-        const JUDGED: f64 = 1e-7;
+        const ROUNDING_LIMIT: f64 = 1e-7;
         let (model, u) = (self.model, &self.state.displacement);
         let at_rest = vec![0.0; u.len()];
         let body = if model.energy.is_objective() {
@@ -150,7 +150,7 @@ impl Reactions<'_> {
             let none = Resultant::default();
             return body.balance(none, none, rounding);
         }
-        body.balance(supports, loads, rounding / JUDGED)
+        body.balance(supports, loads, rounding / ROUNDING_LIMIT)
     }
 
     /// Rounding of forces in N.

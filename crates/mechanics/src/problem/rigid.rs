@@ -19,10 +19,10 @@ use crate::mesh::{Mesh, Parts, decimals_for};
 const FREE: f64 = 1e-14;
 
 /// Most bodies that are analysed together with their hinges and common grips; more are faults of the mesh, and each is analysed alone.
-const TOGETHER: usize = 100;
+const MOST_BODIES: usize = 100;
 
 /// Most free motions that are reported one by one.
-const MOST: usize = 8;
+const MOST_MOTIONS: usize = 8;
 
 /// The parts of a mesh that can move without strain, each reported with its motion.
 pub fn free_motions(mesh: &Mesh, constraints: &Constraints) -> Vec<Diagnostic> {
@@ -37,8 +37,8 @@ pub fn free_motions(mesh: &Mesh, constraints: &Constraints) -> Vec<Diagnostic> {
             }
         }
     }
-    let more = diagnostics.len().saturating_sub(MOST);
-    diagnostics.truncate(MOST);
+    let more = diagnostics.len().saturating_sub(MOST_MOTIONS);
+    diagnostics.truncate(MOST_MOTIONS);
     if more > 0 {
         diagnostics.push(
             Diagnostic::error(
@@ -97,7 +97,7 @@ impl<'a> Bodies<'a> {
     /// Groups of bodies that hinges or ties couple; each body alone where there are too many.
     fn groups(&self, constraints: &Constraints) -> Vec<Vec<usize>> {
         let bodies = self.cells.len();
-        if bodies > TOGETHER {
+        if bodies > MOST_BODIES {
             return (0..bodies).map(|body| vec![body]).collect();
         }
         let mut parts = Parts::new(bodies);

@@ -35,7 +35,7 @@ pub use prolongation::Motions;
 const COARSEST: usize = 200;
 
 /// Largest share of a level's nodes that the next coarser one may have; where groups stay small, that level is the last.
-const SLOW: f64 = 0.7;
+const LARGEST_COARSENING: f64 = 0.7;
 
 /// Levels from fine to coarse.
 pub struct Hierarchy {
@@ -58,7 +58,7 @@ impl Hierarchy {
         let mut nodes = fine.nodes();
         loop {
             let rows = below.matrix.rows();
-            if rows <= COARSEST || rows as f64 > SLOW * nodes as f64 {
+            if rows <= COARSEST || rows as f64 > LARGEST_COARSENING * nodes as f64 {
                 break;
             }
             nodes = rows;

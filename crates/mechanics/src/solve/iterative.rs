@@ -24,7 +24,7 @@ pub enum LinearSolver {
 pub const WORTH_MULTIGRID: usize = 500_000;
 
 /// Most iterations of a system.
-const MOST: usize = 80;
+const MOST_ITERATIONS: usize = 80;
 
 /// Iterations, relative to those of a cycle made for the same tangent, from which on a new cycle is made.
 const STALE: f64 = 1.6;
@@ -115,7 +115,7 @@ impl Iterative {
     pub fn solve(&mut self, b: &[f64], reduction: f64) -> Result<Vec<f64>, FactorFault> {
         let b = self.nodes.spread(b);
         loop {
-            let solution = self.iterate(&b, reduction, MOST);
+            let solution = self.iterate(&b, reduction, MOST_ITERATIONS);
             if let Ok(solution) = &solution
                 && solution.reduction <= reduction
             {

@@ -22,13 +22,13 @@ pub struct Newton {
 const NEGLIGIBLE: f64 = 1e-4;
 
 /// The share of the relative residual before a step that may remain after it if its tangent is to be used again.
-const SERVES: f64 = 0.05;
+const REUSABLE: f64 = 0.05;
 
 /// The share that may remain after a step with the tangent of another state nearby: three such steps cost less than a factor.
-const SERVES_NEARBY: f64 = 0.3;
+const REUSABLE_NEARBY: f64 = 0.3;
 
 /// Relative residual below which the tangent no longer changes its definiteness.
-const SMALL: f64 = 1e-3;
+const DEFINITE_BELOW: f64 = 1e-3;
 
 /// Relative residual below which a tangent that is not positive definite is that of an unstable equilibrium. Beyond
 /// that, rounding would choose between the branches beside it.
@@ -168,7 +168,7 @@ impl Newton {
             shifted: false,
         };
         let mut descent = Descent::new(potential, u, residual, settings);
-        if self.hold_tangent(&mut descent, near, SERVES_NEARBY) {
+        if self.hold_tangent(&mut descent, near, REUSABLE_NEARBY) {
             return Ok(descent.log);
         }
         self.solve(potential, u, residual, settings, describe)
@@ -214,10 +214,10 @@ impl Newton {
             let searched = self.search(to, now.energy, &step);
             let (length, energy) = searched.map_err(|fault| fault.named(describe))?;
             to.log.cut_steps += usize::from(length < 1.0);
-            if now.shifted || now.relative > SMALL {
+            if now.shifted || now.relative > DEFINITE_BELOW {
                 continue;
             }
-            if self.hold_tangent(to, Iterate { energy, ..now }, SERVES) {
+            if self.hold_tangent(to, Iterate { energy, ..now }, REUSABLE) {
                 return Ok(());
             }
         }
@@ -276,7 +276,7 @@ impl Newton {
             let (length, energy) = self.search(to, now.energy, &step.ok()?).ok()?;
             to.log.cut_steps += usize::from(length < 1.0);
             let after = self.relative_residual(to.residual, now.negligible * largest(to.u));
-            if now.relative <= SMALL && after <= settings.tolerance {
+            if now.relative <= DEFINITE_BELOW && after <= settings.tolerance {
                 to.log.residuals.push(after);
                 to.log.energy = energy;
                 let iterative = self.tangent.iterative.as_mut()?;

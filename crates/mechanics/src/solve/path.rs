@@ -51,7 +51,7 @@ const SHORTEST_FROM_REST: f64 = 1.0 / 1_048_576.0;
 
 /// Tolerances from which on an equilibrium is a first guess, on any branch; a guess that needs steps shorter than twice such a share of the way is
 /// given up.
-const ROUGH: f64 = 1e-2;
+const FIRST_GUESS_TOLERANCE: f64 = 1e-2;
 const SHORTEST_GUESS: f64 = 1.0 / 4.0;
 
 /// Most iterations of an easy step.
@@ -237,7 +237,7 @@ impl<'a> Path<'a> {
 
     /// Whether only a first guess is wanted: the reason of a failure is then not needed.
     fn is_guess(&self) -> bool {
-        self.settings.tolerance >= ROUGH
+        self.settings.tolerance >= FIRST_GUESS_TOLERANCE
     }
 
     /// Whether an equilibrium of any branch will do.

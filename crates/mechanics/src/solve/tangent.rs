@@ -100,7 +100,7 @@ impl Tangent {
     /// # Errors
     /// A [`SolveFault`] when the tangent is singular to working precision.
     pub fn changes(&mut self, residuals: &[Vec<f64>]) -> Result<Vec<Vec<f64>>, SolveFault> {
-        const TOGETHER: usize = 16;
+        const COLUMNS_AT_ONCE: usize = 16;
         const WORTH_FACTOR: usize = 8;
         let Some((first, others)) = residuals.split_first() else {
             return Ok(Vec::new());
@@ -123,7 +123,7 @@ impl Tangent {
         }
         let free = self.assembly.free();
         let cholesky = self.cholesky.as_ref().expect("factorised");
-        let groups = others.par_chunks(TOGETHER).flat_map_iter(|group| {
+        let groups = others.par_chunks(COLUMNS_AT_ONCE).flat_map_iter(|group| {
             let right = group.iter().flat_map(|r| free.iter().map(|i| -r[*i]));
             let mut columns: Vec<f64> = right.collect();
             cholesky.substitute_columns(&mut columns, group.len());
@@ -308,11 +308,11 @@ impl Tangent {
 
     /// K⁻¹ b by multigrid or the factor, without the skew part.
     pub(super) fn solve(&mut self, right: &[f64]) -> Result<Vec<f64>, SolveFault> {
-        const EXACT: f64 = 1e-12;
+        const REDUCTION: f64 = 1e-12;
         if !self.factorised
             && let Some(iterative) = &mut self.iterative
         {
-            if let Ok(x) = iterative.solve(right, EXACT) {
+            if let Ok(x) = iterative.solve(right, REDUCTION) {
                 return Ok(x);
             }
             self.replace_by_factor()?;

@@ -7,12 +7,12 @@ use super::{
 use crate::error::{Error, SolveFault};
 
 /// The iteration's error on all grids but the finest, relative to that allowed there.
-const ON_THE_WAY: f64 = 3.0;
+const COARSER_GRIDS: f64 = 3.0;
 /// The estimated error of the iteration that is allowed relative to the change found, as a share of the tolerance:
 /// the estimate is too small by a factor of 1.6 at most on the plates measured.
-const SURE: f64 = 0.7;
+const ITERATION_SHARE: f64 = 0.7;
 /// Times that the iteration continues where its change is smaller than expected.
-const AGAIN: usize = 6;
+const MOST_CONTINUATIONS: usize = 6;
 
 /// An equilibrium on one grid.
 pub(super) struct Equilibrium {
@@ -174,7 +174,7 @@ impl Climb<'_> {
         let tolerance = if finest {
             self.settings.tolerance
         } else {
-            ON_THE_WAY * self.settings.tolerance
+            COARSER_GRIDS * self.settings.tolerance
         };
         let (expected, ratio) = (ascent.ratio * ascent.size, ascent.ratio);
         let enough = |first: f64, remaining_error: f64| {
@@ -182,10 +182,10 @@ impl Climb<'_> {
             remaining_error <= tolerance * geometric_tail(change, ratio)
         };
         let mut reached = self.solve(index, field, &enough)?;
-        for _ in 0..if finest { AGAIN } else { 0 } {
+        for _ in 0..if finest { MOST_CONTINUATIONS } else { 0 } {
             let pair = [ascent.index, index].map(|index| &self.levels[index]);
             let [change, ratio] = ascent.change_to(pair, field, interpolated);
-            let limit = SURE * tolerance * geometric_tail(change, ratio);
+            let limit = ITERATION_SHARE * tolerance * geometric_tail(change, ratio);
             if reached.remaining_error() <= limit {
                 break;
             }

@@ -5,7 +5,7 @@ use crate::mesh::{self, lobatto};
 use crate::multigrid::{Interpolation, Lines};
 
 /// Places and lengths that differ by less are equal.
-const SAME: f64 = 1e-9;
+const POSITION_TOLERANCE: f64 = 1e-9;
 
 /// The degree from which on elements' own polynomials interpolate as well as cubics.
 const CUBIC: usize = 3;
@@ -79,7 +79,9 @@ impl Grid {
             let last = positions.len() - 1;
             let step = (positions[last] - positions[0]) / last as f64;
             let off = |pair: &[f64]| (pair[1] - pair[0] - step).abs();
-            positions.windows(2).all(|pair| off(pair) <= SAME * step)
+            positions
+                .windows(2)
+                .all(|pair| off(pair) <= POSITION_TOLERANCE * step)
         })
     }
 
@@ -91,7 +93,7 @@ impl Grid {
         }
         let shared = [0, 1].map(|axis| -> Vec<usize> {
             let (coordinates, others) = (&self.coordinates[axis], &coarser.coordinates[axis]);
-            let near = SAME * coordinates[coordinates.len() - 1];
+            let near = POSITION_TOLERANCE * coordinates[coordinates.len() - 1];
             let has = |node: &usize| {
                 let after = others.partition_point(|other| *other < coordinates[*node] - near);
                 others

@@ -74,7 +74,7 @@ impl RetainedFactor {
 }
 
 /// A factor is renewed when the residual after an iteration exceeds this share of the one before.
-const SLOW: f64 = 0.2;
+const SLOW_CONVERGENCE: f64 = 0.2;
 
 /// A residual that stagnates below this share of the forces is rounding.
 const ROUNDING_FLOOR: f64 = 1e-8;
@@ -204,7 +204,7 @@ impl EquationOfMotion<'_> {
             if residual <= settings.tolerance || settled {
                 return Ok((interval, iteration));
             }
-            if !retained.fresh || residual > SLOW * last {
+            if !retained.fresh || residual > SLOW_CONVERGENCE * last {
                 let newest = self.block(window.begin, window.begin + 1, &interval);
                 retained.take(&newest)?;
             }

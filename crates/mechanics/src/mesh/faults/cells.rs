@@ -10,7 +10,7 @@ use crate::mesh::geometry::determinant;
 use crate::statistics::extremes;
 
 /// A Jacobian that counts as zero, relative to the square of a cell's size.
-const NOTHING: f64 = 1e-9;
+const ZERO_JACOBIAN: f64 = 1e-9;
 /// The smallest angle between the sides of a good cell, in degrees; the largest one is 180° less it.
 const SMALLEST_ANGLE: f64 = 5.0;
 /// The longest side of a good cell over its shortest one.
@@ -33,7 +33,7 @@ pub fn without_sense(mesh: &Mesh) -> Vec<Diagnostic> {
             .map(|derivatives| determinant(&mesh.map(cell, derivatives)));
         let [low, high] = extremes(jacobians);
         let [from, to] = mesh.cell_box(cell);
-        let nothing = NOTHING * ((to[0] - from[0]).powi(2) + (to[1] - from[1]).powi(2));
+        let nothing = ZERO_JACOBIAN * ((to[0] - from[0]).powi(2) + (to[1] - from[1]).powi(2));
         if low.abs().max(high.abs()) <= nothing {
             empty.add(mesh.centre(cell));
         } else if low <= nothing || low.is_nan() {

@@ -17,7 +17,7 @@ use super::side_lines::{SideLine, corner};
 use crate::mesh::geometry::distance as length;
 
 /// Parabolas are fitted to so many spacings on either side, but to no more than this share of a closed line.
-const BESIDE: f64 = 4.0;
+const PARABOLA_REACH: f64 = 4.0;
 const SHARE: f64 = 0.125;
 /// But to so many spacings at least, and to so many points, and a little farther.
 const LEAST: f64 = 2.5;
@@ -305,7 +305,9 @@ fn closed(line: &[[f64; 2]], spacing: f64) -> Followed<'_> {
         at,
         total,
         is_closed: true,
-        reach: (BESIDE * spacing).min(SHARE * total).max(LEAST * spacing),
+        reach: (PARABOLA_REACH * spacing)
+            .min(SHARE * total)
+            .max(LEAST * spacing),
     }
 }
 
@@ -342,7 +344,7 @@ fn open_curve(part: &[[f64; 2]], near: f64, spacing: f64) -> Vec<[f64; 2]> {
         at,
         total,
         is_closed: false,
-        reach: BESIDE * spacing,
+        reach: PARABOLA_REACH * spacing,
     };
     if let Some(curve) = followed.through(spacing) {
         return without_the_last(&curve, FINEST * spacing);
@@ -367,7 +369,7 @@ fn open_curve(part: &[[f64; 2]], near: f64, spacing: f64) -> Vec<[f64; 2]> {
     let out = out.fold(0.0, f64::max).min(near);
     for (i, [nx, ny]) in normals.into_iter().enumerate() {
         // The ends stay where they are.
-        let ease = (at[i].min(total - at[i]) / (BESIDE * spacing)).min(1.0);
+        let ease = (at[i].min(total - at[i]) / (PARABOLA_REACH * spacing)).min(1.0);
         let blend = |axis: usize, n: f64| {
             let moved = curve[i][axis] + out * n;
             let on_line = followed.on_the_line(at[i])[axis];

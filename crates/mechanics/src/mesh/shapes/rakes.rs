@@ -36,7 +36,7 @@ pub const SIDES: [(&str, &str); 4] = [
 pub const LEAST_GAP: f64 = 1.2;
 
 /// Half the side of the square around a tine, in radii.
-const REACH: f64 = 4.0;
+const HALF_SQUARE: f64 = 4.0;
 
 /// One axis of the sheet: lines, and the cells between each and the next.
 struct Lines {
@@ -101,7 +101,7 @@ impl Rakes {
 
     /// Half the side of the squares around the tines.
     fn reach(&self) -> f64 {
-        (0.5 * self.least_gap()).min(REACH * self.radius)
+        (0.5 * self.least_gap()).min(HALF_SQUARE * self.radius)
     }
 
     fn lines(&self, axis: usize, size: f64, around: usize) -> Lines {

@@ -123,7 +123,7 @@ pub fn smoothed<const N: usize>(
 /// The largest eigenvalue of D⁻¹ A by a few steps of the power method, made safe.
 fn largest_eigenvalue<const N: usize>(matrix: &Blocks<N, N>, inverses: &[[[f64; N]; N]]) -> f64 {
     const STEPS: usize = 6;
-    const SAFE: f64 = 1.1;
+    const MARGIN: f64 = 1.1;
     let size = matrix.rows();
     let irregular = super::super::krylov::irregular(N * size, 0);
     let chunks = irregular.chunks_exact(N);
@@ -150,5 +150,5 @@ fn largest_eigenvalue<const N: usize>(matrix: &Blocks<N, N>, inverses: &[[[f64; 
         let scale = 1.0 / most;
         now.iter_mut().flatten().for_each(|x| *x *= scale);
     }
-    SAFE * quotient
+    MARGIN * quotient
 }

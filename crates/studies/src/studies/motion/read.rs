@@ -12,7 +12,7 @@ use crate::mass_spring::{DashpotLaw, LatticeSettings, SpringLaw};
 use crate::material::Card;
 use crate::material::card::read_viscosity;
 use crate::material::registry::SWELLING;
-use crate::material::softened_law::WITHOUT;
+use crate::material::softened_law::NO_SOFTENING_ADVICE;
 use crate::material::viscosity::ViscousMaterial;
 use crate::studies::card::read_card;
 use crate::studies::pictures::Pictures;
@@ -183,7 +183,7 @@ fn read_material(section: &Section, folder: &Path) -> Material {
         .is_some_and(|card| card.law.softening().is_some())
     {
         let message = "this card softens, and a motion in time has no memory of the largest load";
-        section.fault("card", message, WITHOUT);
+        section.fault("card", message, NO_SOFTENING_ADVICE);
     }
     section.unknown_keys();
     Material {
