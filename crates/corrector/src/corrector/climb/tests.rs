@@ -19,6 +19,11 @@ const TIGHT: ClimbSettings = ClimbSettings {
     max_iterations: 60,
 };
 
+const EXACT: NewtonSettings = NewtonSettings {
+    tolerance: 1e-11,
+    max_iterations: 60,
+};
+
 fn problem(card: &str, size: [f64; 2], stretch: f64) -> ClampedPlate {
     let card = Card::load(card, Path::new(".")).unwrap();
     ClampedPlate {
@@ -118,63 +123,16 @@ fn direct(
 
 #[test]
 fn the_climb_reaches_the_direct_corrector_with_every_scheme_law_and_number_of_cells() {
+    use DifferenceScheme::{Bicubic, Biquadratic, Gauss};
     let cases = [
-        (
-            "pva-10",
-            [150.0, 50.0],
-            [60, 20],
-            1.0,
-            DifferenceScheme::Gauss,
-        ),
-        (
-            "pva-10",
-            [150.0, 50.0],
-            [36, 12],
-            0.5,
-            DifferenceScheme::Biquadratic,
-        ),
-        (
-            "pva-10",
-            [150.0, 50.0],
-            [31, 11],
-            0.5,
-            DifferenceScheme::Gauss,
-        ),
-        (
-            "neo-hooke",
-            [60.0, 90.0],
-            [17, 23],
-            0.3,
-            DifferenceScheme::Gauss,
-        ),
-        (
-            "treloar-ogden-3",
-            [40.0, 40.0],
-            [18, 14],
-            0.4,
-            DifferenceScheme::Biquadratic,
-        ),
-        (
-            "pva-10-yeoh",
-            [200.0, 20.0],
-            [50, 7],
-            0.2,
-            DifferenceScheme::Gauss,
-        ),
-        (
-            "pva-10",
-            [150.0, 50.0],
-            [54, 18],
-            1.0,
-            DifferenceScheme::Bicubic,
-        ),
-        (
-            "neo-hooke",
-            [40.0, 60.0],
-            [18, 15],
-            0.3,
-            DifferenceScheme::Bicubic,
-        ),
+        ("pva-10", [150.0, 50.0], [60, 20], 1.0, Gauss),
+        ("pva-10", [150.0, 50.0], [36, 12], 0.5, Biquadratic),
+        ("pva-10", [150.0, 50.0], [31, 11], 0.5, Gauss),
+        ("neo-hooke", [60.0, 90.0], [17, 23], 0.3, Gauss),
+        ("treloar-ogden-3", [40.0, 40.0], [18, 14], 0.4, Biquadratic),
+        ("pva-10-yeoh", [200.0, 20.0], [50, 7], 0.2, Gauss),
+        ("pva-10", [150.0, 50.0], [54, 18], 1.0, Bicubic),
+        ("neo-hooke", [40.0, 60.0], [18, 15], 0.3, Bicubic),
     ];
     let graded = |case| [1.0, 1.5, 2.5].map(|grading| (case, grading));
     for ((card, size, cells, stretch, scheme), grading) in cases.into_iter().flat_map(graded) {
@@ -335,11 +293,7 @@ fn grips_in_the_hand_turn_the_plate_and_bring_it_back() {
 fn finite_elements_of_nine_nodes_have_the_biquadratic_equations() {
     let problem = problem("pva-10", [150.0, 50.0], 0.5);
     let model = FiniteElements::new(&problem, [15, 5], Element::Q2);
-    let settings = NewtonSettings {
-        tolerance: 1e-11,
-        max_iterations: 60,
-    };
-    let solved = model.solve(&problem, settings, &|_| ()).unwrap();
+    let solved = model.solve(&problem, EXACT, &|_| ()).unwrap();
     let mut climb = Climb::even(&problem, [30, 10], DifferenceScheme::Biquadratic, TIGHT);
     let field = climb.correct(0.5).unwrap().field.to_nodes();
     assert!(largest_difference(&field, &solved[0].displacement) < 1e-6);
@@ -364,11 +318,7 @@ fn sheets_in_plane_strain_are_climbed_however_little_their_volume_changes() {
         let sheet = Arc::clone(&problem.law).with_volume(volume);
         problem.law = sheet.unwrap();
         let model = FiniteElements::new(&problem, [12, 4], Element::Q2);
-        let settings = NewtonSettings {
-            tolerance: 1e-11,
-            max_iterations: 60,
-        };
-        let solved = model.solve(&problem, settings, &|_| ()).unwrap();
+        let solved = model.solve(&problem, EXACT, &|_| ()).unwrap();
         let mut climb = Climb::even(&problem, [24, 8], DifferenceScheme::Biquadratic, TIGHT);
         let climbed = climb.correct(stretch).unwrap();
         let off = largest_difference(&climbed.field.to_nodes(), &solved[0].displacement);

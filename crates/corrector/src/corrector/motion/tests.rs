@@ -6,7 +6,7 @@ use super::*;
 use crate::corrector::{DifferenceScheme, Solver};
 use crate::dynamics::spring::Spring;
 use crate::dynamics::{
-    Integrator, MovingSupport, Start, Step, TimeSettings, Viscosity, follow, lumped_mass,
+    History, Integrator, MovingSupport, Start, Step, TimeSettings, Viscosity, follow, lumped_mass,
 };
 use crate::material::Card;
 use crate::mesh::{CellShape, Mesh, Side};
@@ -37,6 +37,22 @@ fn windows(steps: usize) -> WindowSettings {
         max_iterations: 20,
         size: 1.0,
     }
+}
+
+/// The motion by generalised-α with ρ∞ = 1 at so many instants after the start.
+fn by_average_acceleration(body: &Motion, step: f64, count: f64) -> History {
+    let settings = TimeSettings {
+        duration: count * step,
+        interval: step,
+        step: Step::AtMost(step),
+        integrator: Integrator::GeneralisedAlpha {
+            spectral_radius: 1.0,
+            tolerance: 1e-13,
+        },
+        most_steps: crate::budget::Budget::USUAL.steps,
+    };
+    let followed = follow(body, settings, &|_| ());
+    followed.map_err(|end| end.fault).unwrap()
 }
 
 /// A wrong motion of the right size.
@@ -203,19 +219,7 @@ fn a_plate_moves_as_by_the_average_acceleration() {
         describe: Box::new(|cell| mesh.describe_cell(cell)),
     };
     let step = 2e-5;
-    let settings = TimeSettings {
-        duration: 100.0 * step,
-        interval: step,
-        step: Step::AtMost(step),
-        integrator: Integrator::GeneralisedAlpha {
-            spectral_radius: 1.0,
-            tolerance: 1e-13,
-        },
-        most_steps: crate::budget::Budget::USUAL.steps,
-    };
-    let history = follow(&body, settings, &|_| ())
-        .map_err(|end| end.fault)
-        .unwrap();
+    let history = by_average_acceleration(&body, step, 100.0);
     let data = vec![body.start.displacement.clone(); 101];
     let equation = EquationOfMotion::new(&body, step, 0.25).unwrap();
     let corrected = equation
@@ -275,20 +279,8 @@ fn a_motion_under_a_force_that_changes_in_time_is_that_of_newmarks_method() {
             frequency: 0.4,
         },
     }];
-    let (step, count) = (0.05, 80);
-    let settings = TimeSettings {
-        duration: step * f64::from(count),
-        interval: step,
-        step: Step::AtMost(step),
-        integrator: Integrator::GeneralisedAlpha {
-            spectral_radius: 1.0,
-            tolerance: 1e-13,
-        },
-        most_steps: crate::budget::Budget::USUAL.steps,
-    };
-    let expected = follow(&body, settings, &|_| ())
-        .map_err(|end| end.fault)
-        .unwrap();
+    let step = 0.05;
+    let expected = by_average_acceleration(&body, step, 80.0);
     let equation = EquationOfMotion::new(&body, step, 0.25).unwrap();
     let given = wrong(expected.instants.len());
     let corrected = equation

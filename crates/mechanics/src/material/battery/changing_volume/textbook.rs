@@ -48,15 +48,13 @@ pub fn textbook() -> Vec<(&'static str, Arc<dyn HyperelasticLaw>, Principal)> {
         plane: PlaneState::Stress,
     };
     let split = Arc::new(crate::material::NeoHooke { c10: 0.5 * mu }).with_volume(logarithmic);
-    vec![
+    let of_cards: Vec<(&'static str, Principal)> = vec![
         (
             "neo-hooke-simo-pister",
-            law("neo-hooke-simo-pister"),
             separable(move |l| mu * l, move |j| (simo * j.ln() - mu) / j),
         ),
         (
             "neo-hooke-ciarlet",
-            law("neo-hooke-ciarlet"),
             separable(
                 move |l| mu * l,
                 move |j| 0.5 * ciarlet * (j - 1.0 / j) - mu / j,
@@ -64,30 +62,19 @@ pub fn textbook() -> Vec<(&'static str, Arc<dyn HyperelasticLaw>, Principal)> {
         ),
         (
             "blatz-ko",
-            law("blatz-ko"),
             separable(
                 move |l| mu * (0.3 * l - 0.7 * l.powi(-3)),
                 move |j| mu * (0.7 - 0.3 * j.powi(-2)),
             ),
         ),
-        (
-            "ogden-hill-1",
-            law("ogden-hill-1"),
-            foam(&[[0.05, 3.5, 0.0]]),
-        ),
-        (
-            "ogden-hill-2",
-            law("ogden-hill-2"),
-            foam(&[[0.04, 4.0, 0.1], [0.01, -1.5, 0.4]]),
-        ),
+        ("ogden-hill-1", foam(&[[0.05, 3.5, 0.0]])),
+        ("ogden-hill-2", foam(&[[0.04, 4.0, 0.1], [0.01, -1.5, 0.4]])),
         (
             "ogden-hill-3",
-            law("ogden-hill-3"),
             foam(&[[0.04, 1.3, 0.45], [0.002, 5.0, 0.2], [0.01, -2.5, -0.1]]),
         ),
         (
             "saint-venant-kirchhoff",
-            law("saint-venant-kirchhoff"),
             Box::new(move |stretches| {
                 let strains = stretches.map(|stretch| 0.5 * (stretch * stretch - 1.0));
                 let trace: f64 = strains.iter().sum();
@@ -96,24 +83,25 @@ pub fn textbook() -> Vec<(&'static str, Arc<dyn HyperelasticLaw>, Principal)> {
         ),
         (
             "linear-elastic",
-            law("linear-elastic"),
             Box::new(move |stretches| {
                 let trace: f64 = stretches.iter().sum::<f64>() - 3.0;
                 stretches.map(|stretch| simo * trace + 2.0 * mu * (stretch - 1.0))
             }),
         ),
-        ("flory-rehner", law("flory-rehner"), gel()),
-        (
-            "neo-hooke, logarithmic",
-            split.expect("a law of invariants"),
-            Box::new(move |stretches| {
-                let j: f64 = stretches.iter().product();
-                let first: f64 = stretches.iter().map(|l| l * l).sum();
-                let scale = mu * j.powf(-2.0 / 3.0);
-                stretches.map(|l| scale * (l - first / (3.0 * l)) + 0.2 * j.ln() / l)
-            }),
-        ),
-    ]
+        ("flory-rehner", gel()),
+    ];
+    let of_split: Principal = Box::new(move |stretches| {
+        let j: f64 = stretches.iter().product();
+        let first: f64 = stretches.iter().map(|l| l * l).sum();
+        let scale = mu * j.powf(-2.0 / 3.0);
+        stretches.map(|l| scale * (l - first / (3.0 * l)) + 0.2 * j.ln() / l)
+    });
+    let split = split.expect("a law of invariants");
+    let of_cards = of_cards.into_iter();
+    of_cards
+        .map(|(name, stress)| (name, law(name), stress))
+        .chain([("neo-hooke, logarithmic", split, of_split)])
+        .collect()
 }
 
 /// The gel of the samples by its free energy per volume as prepared: strands stretched by λᵢ⁰ = λₛ λᵢ, and Flory and Huggins' mixing.
