@@ -38,8 +38,7 @@ impl Corrector<'_> {
             .into_iter()
             .zip(&self.weights);
         let variance = changes.map(|(d, weight)| weight * d * d).sum::<f64>() / freedom;
-        let column = correction.factor.covariance_column(unknown);
-        let column = column?;
+        let column = correction.factor.covariance_column(unknown)?;
         let standard_error = (variance * column[unknown].max(0.0)).sqrt();
         let value = correction.field()[unknown];
         Ok(Estimate::new(value, standard_error, student_reach(freedom)))

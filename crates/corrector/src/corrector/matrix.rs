@@ -47,8 +47,8 @@ impl CorrectionMatrix {
         let rows = self.r.nrows();
         let inverse = self
             .r
-            .solve_upper_triangular(&DMatrix::identity(rows, rows));
-        let inverse = inverse.expect("independent rows");
+            .solve_upper_triangular(&DMatrix::identity(rows, rows))
+            .expect("independent rows");
         &inverse * inverse.transpose()
     }
 }

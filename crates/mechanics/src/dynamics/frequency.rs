@@ -138,8 +138,7 @@ fn factorised(
     assembly
         .linearise(motion.energy, displacement, &mut residual, &mut stiffness)
         .map_err(|fault| motion.inverted(fault))?;
-    let cholesky = assembly.analyse();
-    let mut cholesky = cholesky?;
+    let mut cholesky = assembly.analyse()?;
     let factor = cholesky.factorise(&stiffness);
     factor.map_err(|fault| fault.or(SolveFault::NotPositiveDefinite))?;
     Ok(cholesky)

@@ -245,8 +245,7 @@ impl BodyState {
 impl Stepper for Implicit {
     fn prepare(&mut self, motion: &Motion, held: &[bool]) -> Result<(), SolveFault> {
         let assembly = Assembly::new(motion.energy, held);
-        let cholesky = assembly.analyse();
-        let cholesky = cholesky?;
+        let cholesky = assembly.analyse()?;
         self.system = Some((assembly, cholesky));
         self.factorised = None;
         self.longest = None;

@@ -322,8 +322,8 @@ fn polygon_behind(line: &[[f64; 2]], deep: f64, spacing: f64) -> Option<Vec<[f64
     let is_outer = polygon_area(line) > 0.0;
     let bridged = is_outer.then(|| envelope::without_dents(line, deep, spacing))?;
     let next = |near: &f64| Some(STRAIGHTENING_FACTOR * near);
-    let nears = std::iter::successors(Some(STRAIGHT * spacing), next);
-    let mut nears = nears.take_while(|near| *near < LARGEST_STRAIGHTENING * deep);
+    let mut nears = std::iter::successors(Some(STRAIGHT * spacing), next)
+        .take_while(|near| *near < LARGEST_STRAIGHTENING * deep);
     nears.find_map(|near| envelope::polygonal(&bridged, [near, deep], spacing))
 }
 

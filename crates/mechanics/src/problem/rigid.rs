@@ -233,10 +233,10 @@ impl<'a> Bodies<'a> {
         let is_on_body =
             |nodes: &[usize]| nodes.iter().any(|node| self.of_node[*node].contains(&body));
         let groups = self.mesh.groups().iter();
-        let names = groups
+        let names: Vec<_> = groups
             .filter(|(_, group)| is_on_body(&group.nodes))
-            .map(|(name, _)| format!("`{name}`"));
-        let names: Vec<_> = names.collect();
+            .map(|(name, _)| format!("`{name}`"))
+            .collect();
         let hint = if names.is_empty() {
             "attach it to the rest of the mesh, or leave it out".to_owned()
         } else {

@@ -247,8 +247,8 @@ impl Level {
         let part = Part::all(self.grid.lines());
         let (mut against, mut curvature) = (0.0, 0.0);
         for axis in [0, 1] {
-            let read = [&self.direction, &self.residual, &self.trial_residual];
-            let read = read.map(|field| &field.components[axis][..]);
+            let read = [&self.direction, &self.residual, &self.trial_residual]
+                .map(|field| &field.components[axis][..]);
             let [product_of_part, change] = part.sweep([], read, &|_, [], [p, r, there]| {
                 sum(p.len(), |k| [p[k] * r[k], p[k] * (there[k] - r[k])])
             });
@@ -262,8 +262,8 @@ impl Level {
         };
         for axis in [0, 1] {
             let changed = [&mut u.components[axis], &mut self.residual.components[axis]];
-            let read = [&self.direction, &self.trial_residual];
-            let read = read.map(|field| &field.components[axis][..]);
+            let read =
+                [&self.direction, &self.trial_residual].map(|field| &field.components[axis][..]);
             part.sweep(
                 changed.map(|f| &mut f[..]),
                 read,

@@ -165,8 +165,8 @@ fn a_corrected_specimen_is_in_equilibrium_with_loads_supports_and_ties() {
         &state.displacement,
         Stage::first(1.0),
         SETTINGS,
-    );
-    let computed = computed.unwrap();
+    )
+    .unwrap();
     assert!(largest_difference(&computed.state.displacement, &state.displacement) < 1e-8);
     // Stationary in every unknown: W (u − ū) + Bᵀ ψ = 0.
     let psi: Vec<f64> = computed

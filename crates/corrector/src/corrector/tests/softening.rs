@@ -59,8 +59,8 @@ fn corrected_springs_that_soften_are_the_equilibria_of_bilinear_elements() {
         );
         let work = plate
             .on(&springs.mesh, corrector.energy())
-            .work(&corrected.state);
-        let work = work.unwrap();
+            .work(&corrected.state)
+            .unwrap();
         let other = model.work(&expected[step]).unwrap();
         assert!(
             (work.stored / other.stored - 1.0).abs() < 1e-8,

@@ -13,8 +13,7 @@ impl Card {
             let of_term = [("share", relaxation.share), ("time", relaxation.time)];
             of_term.map(|(key, value)| (format!("relaxation.{term}.{key}"), value))
         });
-        let softening = self.law.softening().into_iter();
-        let softening = softening.flat_map(|ogden_roxburgh| {
+        let softening = self.law.softening().into_iter().flat_map(|ogden_roxburgh| {
             let keys = [
                 ("r", ogden_roxburgh.r),
                 ("m", ogden_roxburgh.m),

@@ -185,8 +185,8 @@ fn bulk_modulus(name: &str, text: &str) -> Result<Option<f64>, Error> {
     let unit = unit
         .trim()
         .strip_prefix("1/")
-        .or((unit.trim() == "mm^2/N").then_some("MPa"));
-    let unit = unit.ok_or_else(refused)?;
+        .or((unit.trim() == "mm^2/N").then_some("MPa"))
+        .ok_or_else(refused)?;
     let one = units::parse(&format!("1 {unit}"), Dimension::Stress).map_err(|_| refused())?;
     if !(number >= 0.0 && number.is_finite()) {
         return Err(refused());

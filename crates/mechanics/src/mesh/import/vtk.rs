@@ -129,8 +129,8 @@ fn cells(vertices: &VertexNumbers) -> Result<Vec<Vec<u64>>, Unreadable> {
             for end in offsets {
                 let nodes = usize::try_from(*end)
                     .ok()
-                    .and_then(|end| connectivity.get(start..end));
-                let nodes = nodes.ok_or(CUT_OFF)?;
+                    .and_then(|end| connectivity.get(start..end))
+                    .ok_or(CUT_OFF)?;
                 cells.push(nodes.to_vec());
                 start = *end as usize;
             }

@@ -110,12 +110,12 @@ fn the_tangent_of_a_pressure_that_ends_freely_is_complete() {
             Assembly::residual(&*potential, &moved, &mut residual).unwrap();
             residual
         };
-        let misses = at(1.0)
+        let misses: Vec<f64> = at(1.0)
             .into_iter()
             .zip(at(-1.0))
             .zip(&product)
-            .map(|((up, down), p)| 0.5 * (up - down) - p);
-        let misses: Vec<f64> = misses.collect();
+            .map(|((up, down), p)| 0.5 * (up - down) - p)
+            .collect();
         assert!(
             norm(&misses) < 1e-13 * norm(&product),
             "{shape:?}: {:.1e}",

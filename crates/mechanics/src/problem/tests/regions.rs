@@ -189,8 +189,8 @@ fn names_and_laws_are_exchanged_without_effect() {
         vec![region("first", &soft), region("second", &stiff)],
         vec![region("second", &stiff), region("first", &soft)],
         vec![region("second", &stiff)],
-    ];
-    let problems = problems.map(|regions| pulled(regions, true));
+    ]
+    .map(|regions| pulled(regions, true));
     // The law of the cells of no region is the soft one.
     let [one, other, rest] = problems
         .each_ref()

@@ -27,8 +27,8 @@ pub fn tentative<const N: usize>(
     let mut rigid = motions.to_vec();
     let coarse = members
         .iter()
-        .map(|nodes| orthonormalise(&mut rigid, nodes));
-    let coarse = coarse.collect();
+        .map(|nodes| orthonormalise(&mut rigid, nodes))
+        .collect();
     (rigid, coarse)
 }
 

@@ -111,8 +111,8 @@ impl Sheet {
             &nodes.uneven(),
             1e-8,
             200,
-        );
-        let solution = solution.unwrap();
+        )
+        .unwrap();
         assert!(solution.reduction <= 1e-8);
         // The true residual has fallen too.
         let b = nodes.gather(&nodes.uneven());
