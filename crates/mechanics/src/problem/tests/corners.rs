@@ -1,8 +1,8 @@
 //! Forces and moments of groups that meet in a corner.
 
 use super::samples::{CLAMP, problem, strip};
-use crate::mesh::CellShape;
-use crate::problem::{GroupState, Load, Support};
+use crate::mesh::{CellShape, Mesh};
+use crate::problem::{BoundaryProblem, GroupState, Load, Support};
 use crate::solve::NewtonSettings;
 use crate::units::parse_linear_length;
 
@@ -13,17 +13,24 @@ const TIGHT: NewtonSettings = NewtonSettings {
 
 const GROUPS: [&str; 4] = ["left", "bottom", "right", "top"];
 
-fn at_groups(
+fn states_of<const N: usize>(
+    problem: &BoundaryProblem,
+    mesh: &Mesh,
+    groups: [&str; N],
+) -> [GroupState; N] {
+    let energy = problem.finite_elements(mesh);
+    let model = problem.on(mesh, &energy).unwrap();
+    let state = model.solve(&[1.0], TIGHT, &|_| ()).unwrap().remove(0);
+    let reactions = model.reactions(&state);
+    groups.map(|group| reactions.at_group(group))
+}
+
+fn at_sides(
     cells: CellShape,
     supports: &[(&str, Support)],
     loads: &[(&str, Load)],
 ) -> [GroupState; 4] {
-    let (mesh, problem) = (strip(cells), problem(supports, loads));
-    let energy = problem.finite_elements(&mesh);
-    let model = problem.on(&mesh, &energy).unwrap();
-    let state = model.solve(&[1.0], TIGHT, &|_| ()).unwrap().remove(0);
-    let reactions = model.reactions(&state);
-    GROUPS.map(|group| reactions.at_group(group))
+    states_of(&problem(supports, loads), &strip(cells), GROUPS)
 }
 
 /// A traction of 0.02 MPa on 10 × 2 mm against two axes of symmetry: uniaxial tension, in which one axis pulls with 0.4 N and no moment
@@ -33,7 +40,7 @@ fn axes_of_symmetry_share_no_force_at_their_corner() {
     let supports = [("left", Support::Roller), ("bottom", Support::Roller)];
     let traction = [("right", Load::Traction([0.02, 0.0]))];
     for (name, cells) in CellShape::NAMES {
-        let [left, others @ ..] = at_groups(cells, &supports, &traction);
+        let [left, others @ ..] = at_sides(cells, &supports, &traction);
         assert!((left.force[0] + 0.4).abs() < 1e-10, "{name}: {left:?}");
         assert!(
             left.force[1].abs() + left.moment.abs() < 1e-9,
@@ -65,7 +72,7 @@ fn forces_of_sides_that_meet_add_up_to_those_of_all_supports() {
             ("top", Support::Displacement([Some(0.0), None])),
         ];
         let load = [("right", Load::Traction([0.01, 0.004]))];
-        let all = at_groups(cells, &supports, &load);
+        let all = at_sides(cells, &supports, &load);
         let sum = |axis: usize| all.iter().map(|reaction| reaction.force[axis]).sum::<f64>();
         assert!((sum(0) + 0.2).abs() < 1e-10 && (sum(1) + 0.08).abs() < 1e-10);
         assert_eq!((all[1].force[0], all[3].force[1]), (0.0, 0.0));
@@ -76,7 +83,7 @@ fn forces_of_sides_that_meet_add_up_to_those_of_all_supports() {
         );
 
         let grips = [("left", CLAMP), ("right", pull)];
-        let [left, bottom, right, _] = at_groups(cells, &grips, &[]);
+        let [left, bottom, right, _] = at_sides(cells, &grips, &[]);
         assert!((left.force[0] + right.force[0]).abs() < 1e-10 && right.force[0] > 0.1);
         assert_eq!(bottom.size, 0.0);
     }
@@ -90,7 +97,7 @@ fn sides_that_hold_one_corner_have_the_forces_of_their_own_tractions() {
     let stretched = Support::LinearDisplacement([along("0.1 * X"), along("-0.02 * Y")]);
     let supports = GROUPS.map(|group| (group, stretched));
     for (name, cells) in CellShape::NAMES {
-        let [left, bottom, right, top] = at_groups(cells, &supports, &[]);
+        let [left, bottom, right, top] = at_sides(cells, &supports, &[]);
         assert!(right.force[0] > 0.1 && top.force[1].abs() > 0.01);
         for (reaction, across, other) in [(left, 1, right), (bottom, 0, top)] {
             let along = 1 - across;
@@ -122,12 +129,8 @@ fn moments_are_about_the_middle_of_the_group_however_its_nodes_lie() {
         for [_, y] in &mut mesh.nodes {
             *y = low + (*y - low).powi(2) / width;
         }
-        let energy = problem.finite_elements(&mesh);
-        let model = problem.on(&mesh, &energy).unwrap();
-        let state = model.solve(&[1.0], TIGHT, &|_| ()).unwrap().remove(0);
-        let reactions = model.reactions(&state);
-        for group in ["left", "right"] {
-            let reaction = reactions.at_group(group);
+        let ends = ["left", "right"];
+        for (group, reaction) in ends.into_iter().zip(states_of(&problem, &mesh, ends)) {
             let middle = 0.5 * (low + high);
             assert!(
                 (reaction.position[1] - middle).abs() < 1e-9,
@@ -156,12 +159,8 @@ fn a_point_beside_an_edge_adds_nothing_to_what_both_hold() {
         mesh.name_nodes("pin", &corner.into_iter().collect());
         let right = mesh.groups()["right"].nodes.iter().copied().collect();
         mesh.name_nodes("mark", &right);
-        let problem = problem(&supports, &[]);
-        let energy = problem.finite_elements(&mesh);
-        let model = problem.on(&mesh, &energy).unwrap();
-        let state = model.solve(&[1.0], TIGHT, &|_| ()).unwrap().remove(0);
-        let reactions = model.reactions(&state);
-        let [left, pin, right] = ["left", "pin", "right"].map(|group| reactions.at_group(group));
+        let groups = ["left", "pin", "right", "mark"];
+        let [left, pin, right, marked] = states_of(&problem(&supports, &[]), &mesh, groups);
         assert!(right.force[0] > 0.1, "{name}: {right:?}");
         assert!(
             (left.force[0] + right.force[0]).abs() < 1e-10,
@@ -172,9 +171,8 @@ fn a_point_beside_an_edge_adds_nothing_to_what_both_hold() {
             "{name}: {pin:?}"
         );
         // A set of nodes that no support names has all of its part.
-        let marked = reactions.at_group("mark").force;
         assert!(
-            (marked[0] - right.force[0]).abs() < 1e-10,
+            (marked.force[0] - right.force[0]).abs() < 1e-10,
             "{name}: {marked:?}"
         );
     }
