@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use web_time::Instant;
 
 use gelbench::error::Error;
-use gelbench::solve::{LinearSolver, Loading, Stage};
+use gelbench::solve::{LinearSolver, Loading};
 use gelbench_mechanics::problem::CellLaws;
 use gelbench_mechanics::solve::{Tangent, compliance};
 use gelbench_report::results::{Finding, nodal_states};
@@ -216,9 +216,8 @@ fn multipliers(
         &model.held(),
         LinearSolver::Direct,
     );
-    let computed = tangent.and_then(|mut tangent| {
-        compliance(&mut tangent, &model, Stage::first(1.0), corrected, &change)
-    });
+    let computed =
+        tangent.and_then(|mut tangent| compliance(&mut tangent, &model, corrected, &change));
     computed.map_err(|fault| Error::Solve {
         model: "multipliers".into(),
         step: grip.to_string(),

@@ -114,20 +114,19 @@ pub fn follow(
     Ok(states)
 }
 
-/// The change of an equilibrium by its transposed tangent under small forces on free unknowns, while held ones rest: the
-/// influence of a disturbance of the field on the forces' displacement, and, where the tangent is symmetric, the sensitivity
-/// of the field to the forces.
+/// The change of an equilibrium at load factor 1, without a history, by its transposed tangent under small forces on free
+/// unknowns, while held ones rest: the influence of a disturbance of the field on the forces' displacement, and, where the
+/// tangent is symmetric, the sensitivity of the field to the forces.
 ///
 /// # Errors
 /// A [`SolveFault`] when the tangent is not positive definite.
 pub fn compliance(
     tangent: &mut Tangent,
     loading: &dyn Loading,
-    stage: Stage<'_>,
     displacement: &[f64],
     forces: &[f64],
 ) -> Result<Vec<f64>, SolveFault> {
-    let potential = loading.potential(stage.factor, stage.history);
+    let potential = loading.potential(1.0, &[]);
     let describe = |element| loading.describe(element);
     tangent.respond(&*potential, displacement, forces, &describe)
 }

@@ -14,7 +14,7 @@ use crate::mesh::Mesh;
 use crate::problem::Model;
 use crate::problem::sheet_energy::SheetEnergy;
 use crate::solve::{
-    Assembly, LinearSolver, Loading, NewtonSettings, Potential, Stage, Tangent, compliance,
+    Assembly, LinearSolver, Loading, NewtonSettings, Potential, Tangent, compliance,
 };
 
 /// The remaining residual of Newton's method, relative to the largest reaction.
@@ -98,7 +98,7 @@ impl Climb<'_> {
         let held = model.held();
         let (u, b) = (u.to_nodes(), b.to_nodes());
         let mut tangent = Tangent::new(&plate.energy, &held, LinearSolver::Direct)?;
-        let mut x = compliance(&mut tangent, &model, Stage::first(1.0), &u, &b)?;
+        let mut x = compliance(&mut tangent, &model, &u, &b)?;
         let mut image = vec![0.0; x.len()];
         let product = Assembly::add_product(&plate.energy, &u, &x, &mut image);
         product.map_err(|fault| fault.named(|element| plate.describe(element)))?;
