@@ -17,6 +17,24 @@ fn separable(
     })
 }
 
+/// The textbook's stress of Ogden and Hill's foams: μ, α and ν of each term.
+fn foam(terms: &'static [[f64; 3]]) -> Principal {
+    separable(
+        move |l| {
+            terms
+                .iter()
+                .map(|[mu, alpha, _]| 2.0 * mu / alpha * l.powf(alpha - 1.0))
+                .sum()
+        },
+        move |j| {
+            let term = |[mu, alpha, nu]: &[f64; 3]| {
+                -2.0 * mu / alpha * j.powf(-alpha * nu / (1.0 - 2.0 * nu) - 1.0)
+            };
+            terms.iter().map(term).sum()
+        },
+    )
+}
+
 /// Textbook formulas of all laws of [`samples::changing_volume`] and of a split law.
 pub fn textbook() -> Vec<(&'static str, Arc<dyn HyperelasticLaw>, Principal)> {
     let law = |name: &str| {
@@ -24,30 +42,8 @@ pub fn textbook() -> Vec<(&'static str, Arc<dyn HyperelasticLaw>, Principal)> {
         let card = cards.into_iter().find(|card| card.name == name);
         card.expect("a sample").law
     };
-    let foam = |terms: &'static [[f64; 3]]| -> Principal {
-        separable(
-            move |l| {
-                terms
-                    .iter()
-                    .map(|[mu, alpha, _]| 2.0 * mu / alpha * l.powf(alpha - 1.0))
-                    .sum()
-            },
-            move |j| {
-                let term = |[mu, alpha, nu]: &[f64; 3]| {
-                    -2.0 * mu / alpha * j.powf(-alpha * nu / (1.0 - 2.0 * nu) - 1.0)
-                };
-                terms.iter().map(term).sum()
-            },
-        )
-    };
     let (mu, simo, ciarlet) = (0.05, lame_modulus(0.05, 0.3), lame_modulus(0.05, 0.4));
     let kirchhoff = lame_modulus(0.05, 0.15);
-    let logarithmic = Volume {
-        bulk_modulus: 0.2,
-        energy: VolumeEnergy::Logarithmic,
-        plane: PlaneState::Stress,
-    };
-    let split = Arc::new(crate::material::NeoHooke { c10: 0.5 * mu }).with_volume(logarithmic);
     let of_cards: Vec<(&'static str, Principal)> = vec![
         (
             "neo-hooke-simo-pister",
@@ -90,18 +86,29 @@ pub fn textbook() -> Vec<(&'static str, Arc<dyn HyperelasticLaw>, Principal)> {
         ),
         ("flory-rehner", gel()),
     ];
-    let of_split: Principal = Box::new(move |stretches| {
+    let of_cards = of_cards.into_iter();
+    of_cards
+        .map(|(name, stress)| (name, law(name), stress))
+        .chain([logarithmic(mu)])
+        .collect()
+}
+
+/// A law of invariants with the logarithmic energy of the volume, and its textbook formula.
+fn logarithmic(mu: f64) -> (&'static str, Arc<dyn HyperelasticLaw>, Principal) {
+    let volume = Volume {
+        bulk_modulus: 0.2,
+        energy: VolumeEnergy::Logarithmic,
+        plane: PlaneState::Stress,
+    };
+    let law = Arc::new(crate::material::NeoHooke { c10: 0.5 * mu }).with_volume(volume);
+    let stress = move |stretches: [f64; 3]| {
         let j: f64 = stretches.iter().product();
         let first: f64 = stretches.iter().map(|l| l * l).sum();
         let scale = mu * j.powf(-2.0 / 3.0);
         stretches.map(|l| scale * (l - first / (3.0 * l)) + 0.2 * j.ln() / l)
-    });
-    let split = split.expect("a law of invariants");
-    let of_cards = of_cards.into_iter();
-    of_cards
-        .map(|(name, stress)| (name, law(name), stress))
-        .chain([("neo-hooke, logarithmic", split, of_split)])
-        .collect()
+    };
+    let law = law.expect("a law of invariants");
+    ("neo-hooke, logarithmic", law, Box::new(stress))
 }
 
 /// The gel of the samples by its free energy per volume as prepared: strands stretched by λᵢ⁰ = λₛ λᵢ, and Flory and Huggins' mixing.
