@@ -36,7 +36,7 @@ pub use import::{
     ImportFault, ImportedField, ImportedSeries, ImportedStep, MeshData, MeshReading, import,
     import_field, import_series,
 };
-pub use interpolation::Interpolation;
+pub use interpolation::{CellPoint, Interpolation};
 pub use nodal_field::NodalField;
 pub use outline::corners;
 pub use outline::{Outline, OutlineFault, OutlineOfPoints, straightened};

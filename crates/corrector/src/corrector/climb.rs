@@ -333,7 +333,7 @@ fn coarser(boundaries: &[Vec<f64>; 2], scheme: DifferenceScheme) -> Option<[Vec<
     }))
 }
 
-/// Every second one of some places; where the number of intervals is odd, places between them.
+/// Every second one of some positions; where the number of intervals is odd, positions between them.
 fn thin_out(coordinates: &[f64]) -> Vec<f64> {
     let fine = coordinates.len() - 1;
     let coarse = fine.div_ceil(2);

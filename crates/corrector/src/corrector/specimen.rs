@@ -14,7 +14,7 @@ pub const EQUILIBRIUM: &str = "equilibrium";
 /// The name of the condition that the supports impose.
 pub const SUPPORTS: &str = "supports";
 
-/// Names of a mesh's cells and nodes by their places.
+/// Names of a mesh's cells and nodes by their positions.
 struct Names<'a>(&'a Model<'a>);
 
 impl Describe for Names<'_> {

@@ -34,19 +34,19 @@ impl<'a> LineStencil<'a> {
     }
 }
 
-/// The numbers of a vector that begin at a place.
+/// The numbers of a vector that begin at a position.
 #[inline(always)]
 fn load<S: Simd>(numbers: &[f32], position: usize) -> S::f32s {
     S::as_simd_f32s(&numbers[position..position + S::F32_LANES]).0[0]
 }
 
-/// Writes a vector of numbers at a place.
+/// Writes a vector of numbers at a position.
 #[inline(always)]
 pub fn store<S: Simd>(numbers: &mut [f32], position: usize, vector: S::f32s) {
     S::as_mut_simd_f32s(&mut numbers[position..position + S::F32_LANES]).0[0] = vector;
 }
 
-/// The part of both lines of a pair that begins at a place.
+/// The part of both lines of a pair that begins at a position.
 #[inline(always)]
 fn load_pair<S: Simd>(pair: Pair, position: usize) -> [S::f32s; 2] {
     [load::<S>(pair[0], position), load::<S>(pair[1], position)]
@@ -58,7 +58,7 @@ fn combine<S: Simd>(simd: S, [a, b]: [S::f32s; 2], [x, y]: [S::f32s; 2]) -> S::f
     simd.mul_add_e_f32s(b, y, simd.mul_f32s(a, x))
 }
 
-/// r − A x for a block A = [a b; c d] of a line, at the nodes of a vector that begins at a place, and x at those that begin at another one.
+/// r − A x for a block A = [a b; c d] of a line, at the nodes of a vector that begins at a position, and x at those that begin at another one.
 #[inline(always)]
 fn subtract<S: Simd>(
     simd: S,
@@ -75,7 +75,7 @@ fn subtract<S: Simd>(
     ]
 }
 
-/// r less the part of K x that comes from the lines before and after, at the vector that begins at a place.
+/// r less the part of K x that comes from the lines before and after, at the vector that begins at a position.
 #[inline(always)]
 fn subtract_beside<S: Simd>(
     simd: S,
@@ -109,7 +109,7 @@ fn subtract_along<S: Simd>(
     subtract(simd, r, (current, south), x, [below, below])
 }
 
-/// b − K x at the vector of nodes that begins at a place; `x` are the lines before, at and after.
+/// b − K x at the vector of nodes that begins at a position; `x` are the lines before, at and after.
 #[inline(always)]
 pub fn residual<S: Simd>(
     simd: S,
@@ -159,11 +159,11 @@ pub struct SmoothLine<'a> {
     pub x_x: &'a mut [f32],
     pub x_y: &'a mut [f32],
     pub scratch: &'a mut [Vec<f32>; 2],
-    /// The place in a line at which the nodes of the first colour begin.
+    /// The position in a line at which the nodes of the first colour begin.
     pub first: usize,
 }
 
-/// One at the nodes of a colour, zero at the others, from a place that is even.
+/// One at the nodes of a colour, zero at the others, from a position that is even.
 pub const COLOURS: [[f32; VECTOR]; 2] = {
     let mut current = [[0.0; VECTOR]; 2];
     let mut position = 0;

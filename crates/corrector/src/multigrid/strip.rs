@@ -39,7 +39,7 @@ enum Axis {
     Y,
 }
 
-/// Neighbouring places along an axis, on which lines along it are solved for.
+/// Neighbouring positions along an axis, on which lines along it are solved for.
 #[derive(Clone, Debug)]
 struct Strip {
     axis: Axis,
@@ -86,7 +86,7 @@ impl LineSmoother {
         }
     }
 
-    /// The places of the strips along X, then of those along Y.
+    /// The positions of the strips along X, then of those along Y.
     #[cfg(test)]
     pub fn ranges(&self) -> Vec<Range<usize>> {
         let ranges = self.strips.iter().map(|strip| strip.range.clone());
@@ -145,7 +145,7 @@ fn is_even(spacings: &[f64]) -> bool {
     longest(spacings) <= (1.0 + EQUAL) * shortest
 }
 
-/// Runs of places among some whose neighbours are close, as compared with the longest spacing along the other axis.
+/// Runs of positions among some whose neighbours are close, as compared with the longest spacing along the other axis.
 fn close(spacings: &[f64], other: f64, among: Range<usize>) -> Vec<Range<usize>> {
     let last = spacings.len() - 1;
     let is_close = |position: usize| {
@@ -205,7 +205,7 @@ impl Strip {
         self.factors = factors;
     }
 
-    /// Writes Dₖ and Eₖ of a batch's lines at a place.
+    /// Writes Dₖ and Eₖ of a batch's lines at a position.
     fn gather(&self, stencil: &Stencil, batch: usize, position: usize, numbers: &mut [f32]) {
         let lanes = numbers.chunks_exact_mut(LANES);
         match self.axis {
@@ -328,7 +328,7 @@ impl WithSimd for Batch<'_> {
 }
 
 impl Batch<'_> {
-    /// b − K x of a line at the nodes that begin at a place.
+    /// b − K x of a line at the nodes that begin at a position.
     #[inline(always)]
     fn residual<S: Simd>(&self, simd: S, line: usize, position: usize) -> [S::f32s; 2] {
         let stencils: [LineStencil; 2] = [self.stencil.line(line - 1), self.stencil.line(line)];

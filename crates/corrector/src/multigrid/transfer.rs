@@ -2,16 +2,16 @@
 
 use super::vector::Vector;
 
-/// Values at given places as combinations of those at the nodes of a grid, along one axis.
+/// Values at given positions as combinations of those at the nodes of a grid, along one axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Interpolation {
-    /// For each place the first node and the shares of it and of those that follow.
+    /// For each position the first node and the shares of it and of those that follow.
     shares: Vec<(usize, [f64; 4])>,
     width: usize,
 }
 
 impl Interpolation {
-    /// By the polynomials through so many nodes around each place, or through all where there are fewer.
+    /// By the polynomials through so many nodes around each position, or through all where there are fewer.
     pub fn around(nodes: &[f64], positions: &[f64], width: usize) -> Self {
         let width = width.min(nodes.len());
         Self::through(nodes, positions, width, |after| {
@@ -27,7 +27,7 @@ impl Interpolation {
         })
     }
 
-    /// By the polynomials through so many nodes, the first of which follows from the number of nodes up to the place.
+    /// By the polynomials through so many nodes, the first of which follows from the number of nodes up to the position.
     fn through(
         nodes: &[f64],
         positions: &[f64],
@@ -44,19 +44,19 @@ impl Interpolation {
         }
     }
 
-    /// For each place the first node and the shares of it and of those that follow.
+    /// For each position the first node and the shares of it and of those that follow.
     pub fn shares(&self) -> impl Iterator<Item = (usize, &[f64])> {
         (0..self.shares.len()).map(|position| self.at(position))
     }
 
-    /// The first node and the shares of it and of those that follow, for one of the places.
+    /// The first node and the shares of it and of those that follow, for one of the positions.
     pub fn at(&self, position: usize) -> (usize, &[f64]) {
         let (first, shares) = &self.shares[position];
         (*first, &shares[..self.width])
     }
 }
 
-/// The shares of up to four nodes at a place, by the polynomial through them.
+/// The shares of up to four nodes at a position, by the polynomial through them.
 fn shares(nodes: &[f64], position: f64) -> [f64; 4] {
     let mut shares = [0.0; 4];
     for (i, (share, node)) in shares.iter_mut().zip(nodes).enumerate() {

@@ -11,9 +11,9 @@ use super::vector::VECTOR;
 
 /// Systems that are solved side by side.
 pub const LANES: usize = VECTOR;
-/// Numbers kept of each place: the three of Dₖ or Sₖ⁻¹, and the four of Eₖ, row by row.
+/// Numbers kept of each position: the three of Dₖ or Sₖ⁻¹, and the four of Eₖ, row by row.
 pub const FACTOR: usize = 7 * LANES;
-/// Numbers of a place's right-hand side, and of its solution.
+/// Numbers of a position's right-hand side, and of its solution.
 pub const PAIR: usize = 2 * LANES;
 
 type Lanes = [f32; LANES];
@@ -48,7 +48,7 @@ impl NullaryFnOnce for Factorise<'_> {
                 }
                 let [a, b, c] = [block[0][lane], block[1][lane], block[2][lane]];
                 let determinant = a * c - b * b;
-                // Places beside the grid have no stiffness.
+                // Positions beside the grid have no stiffness.
                 let inverse = if determinant == 0.0 {
                     0.0
                 } else {

@@ -22,7 +22,7 @@ impl Lines {
         self.nodes.next_multiple_of(VECTOR)
     }
 
-    /// Places that a line takes: those that are worked on, and one more at either end that stays zero.
+    /// Positions that a line takes: those that are worked on, and one more at either end that stays zero.
     pub fn stride(self) -> usize {
         self.padded() + 2
     }

@@ -19,7 +19,7 @@ pub struct Motion<'a> {
     pub forces: Vec<MovingForce>,
     /// The start.
     pub start: Start,
-    /// Names an element of the energy with its place, for messages.
+    /// Names an element of the energy with its position, for messages.
     pub describe: Box<dyn Fn(usize) -> String + Sync + 'a>,
 }
 

@@ -134,7 +134,7 @@ impl Lattice {
         let count = corners.len();
         let next = |i: usize| (i + 1) % count;
         let before = |i: usize| (i + count - 1) % count;
-        // Places relative to the first corner, so that no digit is lost far from the origin.
+        // Positions relative to the first corner, so that no digit is lost far from the origin.
         let (mut reference, mut positions) = ([[0.0; 2]; 4], [[0.0; 2]; 4]);
         for (i, axis) in (0..count).flat_map(|i| [(i, 0), (i, 1)]) {
             reference[i][axis] = corners[i][axis] - corners[0][axis];

@@ -28,7 +28,7 @@ impl CrossSections {
         *self.0.entry(([a.min(b), a.max(b)], law)).or_insert(0.0) += area;
     }
 
-    /// The springs between nodes at these places.
+    /// The springs between nodes at these positions.
     pub fn springs(self, positions: &[[f64; 2]]) -> Vec<Spring> {
         let spring = |((nodes, law), area): (([usize; 2], u8), f64)| {
             let [from, to] = nodes.map(|node| positions[node]);

@@ -204,7 +204,7 @@ pub struct TensionResponse {
 /// Points that are evaluated side by side.
 pub(super) const LANES: usize = 16;
 
-/// Copies the results at `count` points to the places from `first` on.
+/// Copies the results at `count` points to the positions from `first` on.
 #[inline(always)]
 pub(super) fn store<const N: usize>(
     all: &mut [&mut [f64]; N],

@@ -63,10 +63,10 @@ pub enum TableFault {
     /// A point that is not finite.
     #[error("has a point that is not finite")]
     NotFinite,
-    /// A place that is not greater than the one before it.
+    /// A position that is not greater than the one before it.
     #[error("must ascend: {next} follows {before}")]
     NotAscending {
-        /// The place.
+        /// The position.
         next: f64,
         /// The one before it.
         before: f64,

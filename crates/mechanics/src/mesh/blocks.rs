@@ -61,7 +61,7 @@ impl Builder {
         }
     }
 
-    /// The node at a place, a new one where there is none.
+    /// The node at a position, a new one where there is none.
     fn node(&mut self, position: [f64; 2]) -> usize {
         let square = position.map(|x| (x / self.fine).round() as i64);
         for (dx, dy) in (-1..=1).flat_map(|dx| (-1..=1).map(move |dy| (dx, dy))) {
@@ -74,7 +74,7 @@ impl Builder {
         node
     }
 
-    /// The node at a place inside of a block, where no other block has one.
+    /// The node at a position inside of a block, where no other block has one.
     fn inner_node(&mut self, position: [f64; 2]) -> usize {
         self.nodes.push(position);
         self.nodes.len() - 1

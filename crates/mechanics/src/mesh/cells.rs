@@ -257,7 +257,7 @@ impl Mesh {
     }
 }
 
-/// The decimals that distinguish places on bodies, or cells, of a size in mm: one for sizes of a tenth and larger.
+/// The decimals that distinguish positions on bodies, or cells, of a size in mm: one for sizes of a tenth and larger.
 pub fn decimals_for(size: f64) -> usize {
     (-size.log10().floor()).clamp(1.0, 9.0) as usize
 }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::cells::Mesh;
 
-/// A mesh whose parts share no node. Its cells have the numbers and places of those of the mesh that was cut; it has no groups.
+/// A mesh whose parts share no node. Its cells have the numbers and positions of those of the mesh that was cut; it has no groups.
 #[derive(Clone, Debug)]
 pub struct CutMesh {
     /// The mesh.

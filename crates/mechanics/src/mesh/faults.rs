@@ -10,7 +10,7 @@
 //! | parts that are not attached | each moves on its own |
 //! | cell with very small or large angles (a warning) | large errors, bad condition |
 //!
-//! A side's node is at a place, or on a side, when it is nearer than a thousandth of the shortest edge there. The time
+//! A side's node is at a position, or on a side, when it is nearer than a thousandth of the shortest edge there. The time
 //! grows like n log n with the number of cells n.
 
 use std::collections::HashSet;
@@ -33,7 +33,7 @@ impl Mesh {
         cells::without_sense(self)
     }
 
-    /// All faults, each kind once with its number of places and the first of them in mm: errors first, then warnings.
+    /// All faults, each kind once with its number of positions and the first of them in mm: errors first, then warnings.
     pub fn faults(&self, allowed: Exemptions) -> Vec<Diagnostic> {
         let mut diagnostics = self.cells_without_sense();
         let twice = cells::given_twice(self);

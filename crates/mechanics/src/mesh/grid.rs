@@ -29,7 +29,7 @@ impl Side {
         }
     }
 
-    /// Whether a place in mm lies on the side of a plate of a size.
+    /// Whether a position in mm lies on the side of a plate of a size.
     pub(super) fn holds(self, size: [f64; 2], [x, y]: [f64; 2]) -> bool {
         match self {
             Self::Left => x == 0.0,
@@ -75,7 +75,7 @@ impl Grid {
         }
     }
 
-    /// The place of a line in mm, `step` of `steps` along an axis; the last one lies on the side to the last digit.
+    /// The position of a line in mm, `step` of `steps` along an axis; the last one lies on the side to the last digit.
     fn line(self, axis: usize, step: usize, steps: usize) -> f64 {
         let size = self.size[axis];
         if self.grading == 1.0 || step == steps {
@@ -96,7 +96,7 @@ impl Grid {
         }
     }
 
-    /// The places of all lines of cells along an axis in mm, from one side to the other.
+    /// The positions of all lines of cells along an axis in mm, from one side to the other.
     pub fn lines(self, axis: usize) -> Vec<f64> {
         (0..=self.cells[axis])
             .map(|line| self.node_line(axis, line, 1))
@@ -116,7 +116,7 @@ impl Grid {
         })
     }
 
-    /// The place of a line of nodes, with `degree` lines per cell.
+    /// The position of a line of nodes, with `degree` lines per cell.
     pub(super) fn node_line(self, axis: usize, node: usize, degree: usize) -> f64 {
         let cells = self.cells[axis];
         if self.is_equal() {

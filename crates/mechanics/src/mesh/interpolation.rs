@@ -5,7 +5,7 @@ use super::cells::Mesh;
 use super::geometry::determinant;
 
 /// A cell, and natural coordinates in it.
-pub type Place = (usize, [f64; 2]);
+pub type CellPoint = (usize, [f64; 2]);
 
 /// The nodes of a mesh as combinations of those of another one.
 #[derive(Clone, Debug)]
@@ -92,13 +92,13 @@ impl Mesh {
         areas
     }
 
-    /// The place in mm of a point of a cell in natural coordinates.
+    /// The position in mm of a point of a cell in natural coordinates.
     pub fn position(&self, cell: usize, local: [f64; 2]) -> [f64; 2] {
         self.interpolated((cell, local), |node, axis| self.nodes[node][axis])
     }
 
-    /// A vector at a place, from its components at the nodes.
-    fn interpolated(&self, (cell, local): Place, at: impl Fn(usize, usize) -> f64) -> [f64; 2] {
+    /// A vector at a position, from its components at the nodes.
+    fn interpolated(&self, (cell, local): CellPoint, at: impl Fn(usize, usize) -> f64) -> [f64; 2] {
         let values = self.shape(cell).values(local);
         [0, 1].map(|axis| {
             let nodes = self.cell(cell).iter().zip(&values);
@@ -111,13 +111,13 @@ impl Mesh {
         self.displacement_in(displacement, self.locate(point))
     }
 
-    fn displacement_in(&self, displacement: &[f64], place: Place) -> [f64; 2] {
-        self.interpolated(place, |node, axis| displacement[2 * node + axis])
+    fn displacement_in(&self, displacement: &[f64], point: CellPoint) -> [f64; 2] {
+        self.interpolated(point, |node, axis| displacement[2 * node + axis])
     }
 
     /// Displacement interpolated at all nodes of another mesh of the specimen; on a seam, that of the side to which a node belongs.
     pub fn displacement_on(&self, displacement: &[f64], other: &Self) -> Vec<f64> {
-        let positions = self.places_by_side_of_seam(other);
+        let positions = self.positions_by_side_of_seam(other);
         let position = |node: usize| match &positions {
             Some(positions) => positions[node],
             None => self.locate(other.nodes[node]),
@@ -128,12 +128,12 @@ impl Mesh {
             .collect()
     }
 
-    /// The places of another mesh's nodes in this one, both of the same specimen, to interpolate many fields; as [`Self::displacement_on`].
+    /// The positions of another mesh's nodes in this one, both of the same specimen, to interpolate many fields; as [`Self::displacement_on`].
     pub fn interpolation_on(&self, other: &Self) -> Interpolation {
         let mut starts = Vec::with_capacity(other.nodes.len() + 1);
         starts.push(0);
         let (mut nodes, mut shares) = (Vec::new(), Vec::new());
-        let positions = self.places_by_side_of_seam(other);
+        let positions = self.positions_by_side_of_seam(other);
         let mut cell = 0;
         for (node, position) in other.nodes.iter().enumerate() {
             let local;

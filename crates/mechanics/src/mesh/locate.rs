@@ -1,4 +1,4 @@
-//! Finds the cell of a mesh that contains a point, and the place of the point in the cell.
+//! Finds the cell of a mesh that contains a point, and the position of the point in the cell.
 
 use super::buckets::Buckets;
 use super::cells::Mesh;

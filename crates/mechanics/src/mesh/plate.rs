@@ -41,7 +41,7 @@ impl Mesh {
         mesh
     }
 
-    /// A plate between the lines of its nodes, whose places along X and Y in mm begin at zero; its groups are the sides `left`, `right`,
+    /// A plate between the lines of its nodes, whose positions along X and Y in mm begin at zero; its groups are the sides `left`, `right`,
     /// `bottom`, `top`.
     pub fn of_lines([x, y]: &[Vec<f64>; 2], shape: CellShape) -> Self {
         let degree = shape.degree();

@@ -330,7 +330,7 @@ mod tests {
                 assert_eq!(other.degree(), 2);
                 assert!(other.faults(crate::mesh::Exemptions::default()).is_empty());
             }
-            // Where the map of an edge has it, a quarter along: ⅜, ¾ and −⅛ of its nodes' places.
+            // Where the map of an edge has it, a quarter along: ⅜, ¾ and −⅛ of its nodes' positions.
             let edge = &mesh.groups()["inside"].edges[0];
             let [a, b, m] = [edge[0], edge[1], edge[2]].map(|node| mesh.nodes[node]);
             let quarter = [0, 1].map(|axis| 0.375 * a[axis] + 0.75 * m[axis] - 0.125 * b[axis]);

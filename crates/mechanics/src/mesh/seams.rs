@@ -1,20 +1,20 @@
 //! Parts of the boundary that lie on each other: the two faces of a slit, bodies that touch.
 //!
-//! A place on them belongs to cells of both sides, whose displacements differ. The node of another mesh is found from the side of its own cells:
+//! A position on them belongs to cells of both sides, whose displacements differ. The node of another mesh is found from the side of its own cells:
 //! from the centre of one of them, cell by cell without crossing the boundary, to the node.
 
 use super::cells::Mesh;
-use super::interpolation::Place;
+use super::interpolation::CellPoint;
 use super::neighbours::Neighbours;
 
 /// A node of the boundary this far inside or outside of a cell that is not its own, in natural coordinates, lies on it.
 const ON_CELL: f64 = 0.02;
-/// A place this far outside of a cell, in natural coordinates, is in it.
+/// A position this far outside of a cell, in natural coordinates, is in it.
 const ROUNDING: f64 = 1e-9;
 
 impl Mesh {
-    /// The places of another mesh's nodes, both of the same specimen, where parts of the boundary lie on each other; `None` where none do.
-    pub(super) fn places_by_side_of_seam(&self, other: &Self) -> Option<Vec<Place>> {
+    /// The positions of another mesh's nodes, both of the same specimen, where parts of the boundary lie on each other; `None` where none do.
+    pub(super) fn positions_by_side_of_seam(&self, other: &Self) -> Option<Vec<CellPoint>> {
         let neighbours = self
             .seams
             .get_or_init(|| self.seamed_neighbours())
@@ -67,7 +67,7 @@ impl Mesh {
         self.holds_inside(self.nodes[node], depth, has_node)
     }
 
-    /// The place at rest of a node of the boundary that a displacement moves into a cell which is not its own, deeper than `depth` in natural
+    /// The position at rest of a node of the boundary that a displacement moves into a cell which is not its own, deeper than `depth` in natural
     /// coordinates: there the mesh overlaps itself.
     pub fn overlap(&self, displacement: &[f64], depth: f64) -> Option<[f64; 2]> {
         let moved = |(node, [x, y]): (usize, &[f64; 2])| {
@@ -81,10 +81,10 @@ impl Mesh {
         overlapping.map(|node| self.nodes[*node])
     }
 
-    /// The cell of a place, reached from another cell across sides that cells share; beside the boundary, the nearest cell on the way.
-    fn walk(&self, neighbours: &Neighbours, from: usize, point: [f64; 2]) -> Place {
+    /// The cell of a position, reached from another cell across sides that cells share; beside the boundary, the nearest cell on the way.
+    fn walk(&self, neighbours: &Neighbours, from: usize, point: [f64; 2]) -> CellPoint {
         let (mut cell, mut visited) = (from, vec![from]);
-        let mut nearest: Option<(f64, Place)> = None;
+        let mut nearest: Option<(f64, CellPoint)> = None;
         loop {
             if let Some(local) = self.natural_coordinates(cell, point) {
                 let outside = self.shape(cell).outside(local);
@@ -198,7 +198,7 @@ mod tests {
 
     #[test]
     fn slits_are_seams_and_joined_cells_are_not() {
-        let is_seamed = |mesh: &Mesh| mesh.places_by_side_of_seam(mesh).is_some();
+        let is_seamed = |mesh: &Mesh| mesh.positions_by_side_of_seam(mesh).is_some();
         assert!(is_seamed(&slit([8, 4], (CellShape::Quad9, false), 2.2)));
         assert!(!is_seamed(&slit([8, 4], (CellShape::Quad9, false), 9.0)));
         assert!(!is_seamed(&Mesh::plate(

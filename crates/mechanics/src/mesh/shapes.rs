@@ -170,7 +170,7 @@ impl Shape {
         }
     }
 
-    /// The place on a curved side that corresponds to a place beside it; `None` for a straight side.
+    /// The position on a curved side that corresponds to a position beside it; `None` for a straight side.
     fn on_outline(self, side: &str, [x, y]: [f64; 2]) -> Option<[f64; 2]> {
         let on_circle = |[a, b]: [f64; 2], radius: f64| {
             let (dx, dy) = (x - a, y - b);
@@ -242,7 +242,7 @@ impl Shape {
         parts
     }
 
-    /// Half the width of a strip, with notches or of a dumb-bell, at a place along it.
+    /// Half the width of a strip, with notches or of a dumb-bell, at a position along it.
     fn half_width(self, x: f64) -> f64 {
         match self {
             Self::NotchedStrip {

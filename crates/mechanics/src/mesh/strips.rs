@@ -16,7 +16,7 @@ pub fn lengths(length: f64, half_width: &impl Fn(f64) -> f64) -> f64 {
     Lengths::new(length, half_width).total()
 }
 
-/// A part of a strip up to a place along it.
+/// A part of a strip up to a position along it.
 pub struct Part {
     /// Where it ends.
     pub to: f64,
@@ -58,7 +58,7 @@ pub fn strip<'a>(
     blocks.collect()
 }
 
-/// Places along a strip that lie closer where it is narrower: l(x) = ∫ dx/width grows by equal amounts between them.
+/// Positions along a strip that lie closer where it is narrower: l(x) = ∫ dx/width grows by equal amounts between them.
 struct Lengths {
     /// x and l(x).
     table: Vec<[f64; 2]>,
@@ -82,12 +82,12 @@ impl Lengths {
         self.table[self.table.len() - 1][1]
     }
 
-    /// l up to a place.
+    /// l up to a position.
     fn up_to(&self, x: f64) -> f64 {
         self.interpolated(x, [0, 1])
     }
 
-    /// The place with some l.
+    /// The position with some l.
     fn position(&self, l: f64) -> f64 {
         self.interpolated(l, [1, 0])
     }

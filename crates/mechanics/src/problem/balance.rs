@@ -16,7 +16,7 @@ pub struct Resultant {
 }
 
 impl Resultant {
-    /// The resultant of nodal forces in N, one for each unknown, at places in mm about a centre.
+    /// The resultant of nodal forces in N, one for each unknown, at positions in mm about a centre.
     pub fn of_nodes(positions: &[[f64; 2]], forces: &[f64], centre: [f64; 2]) -> Self {
         let mut sum = Self::default();
         for (position, force) in positions.iter().zip(forces.chunks_exact(2)) {
@@ -46,7 +46,7 @@ impl Resultant {
 /// F = Σ R + Σ f,   M = Σ (x − c) × (R + f)
 /// ```
 ///
-/// R are the forces of the supports, including pulled grips, and f the loads, on the deformed places x; c is the
+/// R are the forces of the supports, including pulled grips, and f the loads, on the deformed positions x; c is the
 /// centre of the body. Forces within a body have no resultant, whatever its field is; F therefore measures the
 /// equilibrium of the free nodes, and M also the objectivity of the energy. A pressure enters by its resultant on the
 /// deformed edges instead of its nodal forces, so that wrong nodal forces show.

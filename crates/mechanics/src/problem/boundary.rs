@@ -100,7 +100,7 @@ impl BoundaryProblem {
     /// must not contradict each other, and no part may move without strain.
     ///
     /// # Errors
-    /// All faults, each with its place and a remedy.
+    /// All faults, each with its position and a remedy.
     pub fn check(&self, mesh: &Mesh) -> Result<(), Vec<Diagnostic>> {
         let supports = self.supports.iter().map(std::slice::from_ref);
         let supports = supports.map(|support| Constraints::of(mesh, support).err());

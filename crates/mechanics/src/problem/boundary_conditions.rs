@@ -14,7 +14,7 @@ pub enum Support {
     Displacement([Option<f64>; 2]),
     /// Displacements ux, uy in mm that are linear in the coordinates at rest; a component that is not given is free.
     LinearDisplacement([Option<Linear>; 2]),
-    /// A displacement in mm along the line from a point in mm through the place at rest, away from the point; zero across the line.
+    /// A displacement in mm along the line from a point in mm through the position at rest, away from the point; zero across the line.
     Radial {
         /// The point.
         centre: [f64; 2],

@@ -18,7 +18,7 @@ pub const FACTORS: [f64; 3] = [0.3, 0.7, 1.0];
 pub enum Motion {
     /// In proportion to the load factor, in mm at 1.
     Straight(f64),
-    /// Like a coordinate of a point, at a place in mm relative to the centre, that is turned by an angle at 1.
+    /// Like a coordinate of a point, at a position in mm relative to the centre, that is turned by an angle at 1.
     Turn {
         position: [f64; 2],
         axis: usize,
@@ -54,7 +54,7 @@ impl Motion {
 }
 
 impl Support {
-    /// The displacement in mm of a node at a place in mm, at a load factor, along an axis that the support holds.
+    /// The displacement in mm of a node at a position in mm, at a load factor, along an axis that the support holds.
     pub fn displacement(&self, position: [f64; 2], axis: usize, factor: f64) -> Option<f64> {
         motion(self, position, axis).map(|motion| motion.at(factor))
     }

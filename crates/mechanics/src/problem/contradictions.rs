@@ -24,7 +24,7 @@ enum Conflict {
     Grips,
 }
 
-/// Every pair of supports that contradict each other, with the place of the first node.
+/// Every pair of supports that contradict each other, with the position of the first node.
 pub fn contradictions(
     supports: &[(String, Support)],
     mesh: &Mesh,

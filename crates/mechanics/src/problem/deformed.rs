@@ -3,7 +3,7 @@
 use super::laws::CellLaws;
 use crate::material::sheet::{Kinematics, PlaneTensor};
 use crate::material::softened_law::StressAfter;
-use crate::mesh::Mesh;
+use crate::mesh::{CellPoint, Mesh};
 
 /// A sheet with the displacements of its nodes, from any model.
 #[derive(Clone, Debug)]
@@ -13,9 +13,6 @@ pub struct DeformedSheet {
     laws: CellLaws,
     past: Vec<Vec<f64>>,
 }
-
-/// A cell and natural coordinates in it.
-type Place = (usize, [f64; 2]);
 
 /// Stress at a point of a sheet, in MPa.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -131,16 +128,20 @@ impl DeformedSheet {
         })
     }
 
-    fn kinematics_in(&self, position: Place, [x, y]: [f64; 2]) -> Result<Kinematics, PointFault> {
+    fn kinematics_in(
+        &self,
+        position: CellPoint,
+        [x, y]: [f64; 2],
+    ) -> Result<Kinematics, PointFault> {
         let gradient = self.gradient_in(position, &self.displacement);
         Kinematics::new(&gradient).map_err(|_| PointFault::Inverted { x, y })
     }
 
-    fn gradient_in(&self, (cell, local): Place, field: &[f64]) -> PlaneTensor {
+    fn gradient_in(&self, (cell, local): CellPoint, field: &[f64]) -> PlaneTensor {
         PlaneTensor::from(self.mesh.gradient_at(field, cell, local))
     }
 
-    fn locate(&self, point @ [x, y]: [f64; 2]) -> Result<Place, PointFault> {
+    fn locate(&self, point @ [x, y]: [f64; 2]) -> Result<CellPoint, PointFault> {
         let located = self.mesh.locate_within(point, ON_THE_EDGE);
         located.ok_or(PointFault::Outside { x, y })
     }

@@ -33,7 +33,7 @@ pub struct Model<'a> {
     pub mesh: &'a Mesh,
     /// Its strain energy.
     pub energy: &'a dyn Remembering,
-    /// Names an element of the energy with its place, for messages.
+    /// Names an element of the energy with its position, for messages.
     pub describe: Name<'a, usize>,
     pub(super) constraints: Constraints,
     pub(super) loads: Loads,

@@ -186,7 +186,7 @@ impl Edge {
         let by = factor * self.line_load;
         let position: Vec<f64> = self.rest.iter().zip(u).map(|(rest, u)| rest + u).collect();
         let count = position.len() / 2;
-        // Forces depend only on differences of places, which keep all digits relative to the edge's first node.
+        // Forces depend only on differences of positions, which keep all digits relative to the edge's first node.
         let relative: Vec<f64> = (0..position.len())
             .map(|i| position[i] - position[i % 2])
             .collect();

@@ -8,7 +8,7 @@ use super::groups::{mean, shares};
 use super::model::Model;
 use crate::solve::{Assembly, State};
 
-/// Force, place and displacement of a group in one state.
+/// Force, position and displacement of a group in one state.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct GroupState {
     /// Force of the group's supports on the sheet in N, with the signs of the axes, including that of a pulled grip. At a corner
@@ -17,7 +17,7 @@ pub struct GroupState {
     pub force: [f64; 2],
     /// Moment of that force about `position` in N·mm, counter-clockwise; in a linear theory about the same point of the body at rest.
     pub moment: f64,
-    /// Mean deformed place in mm: over the length of its edges at rest, else over its cells, lines or nodes.
+    /// Mean deformed position in mm: over the length of its edges at rest, else over its cells, lines or nodes.
     pub position: [f64; 2],
     /// Mean displacement over the length of its edges in mm.
     pub displacement: [f64; 2],
@@ -83,7 +83,7 @@ impl Model<'_> {
 }
 
 impl Reactions<'_> {
-    /// Force, place and displacement of a group.
+    /// Force, position and displacement of a group.
     ///
     /// # Panics
     /// When the mesh has no such group.
@@ -121,7 +121,7 @@ impl Reactions<'_> {
         }
     }
 
-    /// Force, place and displacement of some groups.
+    /// Force, position and displacement of some groups.
     ///
     /// # Panics
     /// When the mesh has no such group.

@@ -17,7 +17,7 @@ pub struct RigidMotion {
 
 impl RigidMotion {
     /// The motion that brings points nearest to others in weighted least squares, and the middle of the points, about
-    /// which it turns; each pair has a weight, an initial and a final place.
+    /// which it turns; each pair has a weight, an initial and a final position.
     pub fn nearest(pairs: &[(f64, [f64; 2], [f64; 2])]) -> ([f64; 2], Self) {
         let total: f64 = pairs.iter().map(|(weight, ..)| weight).sum();
         let (mut rest, mut end) = ([0.0; 2], [0.0; 2]);

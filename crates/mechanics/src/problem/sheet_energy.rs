@@ -104,7 +104,7 @@ impl SheetEnergy {
         self.points.shrink_to_fit();
         self.point_starts.shrink_to_fit();
         Self {
-            connectivity: self.connectivity.with_places(nodes).shared(),
+            connectivity: self.connectivity.with_positions(nodes).shared(),
             ..self
         }
     }

@@ -129,7 +129,7 @@ impl Points {
         positive && values.all(|value| value.is_finite())
     }
 
-    /// Adds the forces of a cell whose points begin at a place.
+    /// Adds the forces of a cell whose points begin at a position.
     fn add_forces(
         &mut self,
         energy: &SheetEnergy,
@@ -149,7 +149,7 @@ impl Points {
         }
     }
 
-    /// Writes the stiffness of a cell whose points begin at a place.
+    /// Writes the stiffness of a cell whose points begin at a position.
     fn stiffness(
         &self,
         energy: &SheetEnergy,

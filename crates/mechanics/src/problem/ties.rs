@@ -47,7 +47,7 @@ impl<'a> TiedPotential<'a> {
             tied.insert(element, positions);
         }
         Self {
-            connectivity: connectivity.with_places_of(potential.connectivity()),
+            connectivity: connectivity.with_positions_of(potential.connectivity()),
             potential,
             positions: tied,
             ties,

@@ -11,7 +11,7 @@ use crate::mesh::Mesh;
 /// Displacements further from those of a rigid body than this share of its size strain it.
 const ROUNDING: f64 = 1e-9;
 
-/// A displacement that a support prescribes, over the size of the mesh: the place relative to the middle, the axis, and the displacement.
+/// A displacement that a support prescribes, over the size of the mesh: the position relative to the middle, the axis, and the displacement.
 type Prescribed = ([f64; 2], usize, f64);
 
 impl BoundaryProblem {

@@ -2,12 +2,12 @@
 //!
 //! Nodes that are strongly coupled are grouped; each group moves as a rigid body, smoothed by one step of damped Jacobi, and is
 //! one node of the next coarser level, with three unknowns. A cycle costs about as much as two products with the stiffness, and
-//! the iterations around it hardly depend on the number of nodes. Only the places of its nodes are required of the
+//! the iterations around it hardly depend on the number of nodes. Only the positions of its nodes are required of the
 //! mesh: quadrilaterals and triangles, linear and quadratic, graded, locally refined, with holes and any supports.
 //!
 //! | step | how |
 //! |---|---|
-//! | motions without strain | two translations and the rotation of the nodes' places |
+//! | motions without strain | two translations and the rotation of the nodes' positions |
 //! | smoother | block Gauss–Seidel, forward before and backward after the coarser levels: symmetric |
 //! | coarser operators | PᵀAP |
 //! | coarsest level | sparse Cholesky factor |

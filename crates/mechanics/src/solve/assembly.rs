@@ -21,7 +21,7 @@ pub struct Assembly {
     elements: Connectivity,
     /// Computed when it is first needed.
     sparse: OnceLock<(SymmetricPattern, Scatter)>,
-    /// The places of the nodes, as far as they are known.
+    /// The positions of the nodes, as far as they are known.
     nodes: Arc<[[f64; 2]]>,
 }
 
@@ -64,7 +64,7 @@ impl Assembly {
         (position != NOWHERE).then_some(position as usize)
     }
 
-    /// The place of each free unknown, if all are known.
+    /// The position of each free unknown, if all are known.
     pub fn positions(&self) -> Option<impl Iterator<Item = [f64; 2]> + Clone> {
         let last = self.free.last().map_or(0, |unknown| unknown / 2);
         let positions = self.free.iter().map(|unknown| self.nodes[unknown / 2]);
@@ -86,7 +86,7 @@ impl Assembly {
         diagonal.fold(0.0, |most: f64, entry| most.max(stiffness[*entry].abs()))
     }
 
-    /// Analyses the pattern of the stiffness, in an order by places where the system is large and the places are known.
+    /// Analyses the pattern of the stiffness, in an order by positions where the system is large and the positions are known.
     ///
     /// # Errors
     /// [`FactorFault`] when the pattern cannot be analysed because memory runs out.

@@ -58,7 +58,7 @@ pub struct Sum<'a> {
 }
 
 impl<'a> Sum<'a> {
-    /// Π₁ + Π₂; the places of the unknowns are taken from the first potential.
+    /// Π₁ + Π₂; the positions of the unknowns are taken from the first potential.
     pub fn new(first: impl Potential + 'a, second: impl Potential + 'a) -> Self {
         let mut connectivity = first.connectivity().clone();
         connectivity.append(second.connectivity());

@@ -9,7 +9,7 @@ pub struct Connectivity {
     /// Elements that others may have too, followed by elements of this sum alone.
     common: Arc<Elements>,
     added: Elements,
-    /// The places of the nodes, with two unknowns each, if known.
+    /// The positions of the nodes, with two unknowns each, if known.
     nodes: Arc<[[f64; 2]]>,
 }
 
@@ -64,19 +64,19 @@ impl Connectivity {
         &SINGLE
     }
 
-    /// Adds the places of the nodes: large systems are eliminated in an order by places.
+    /// Adds the positions of the nodes: large systems are eliminated in an order by positions.
     #[must_use]
-    pub fn with_places(self, nodes: impl Into<Arc<[[f64; 2]]>>) -> Self {
+    pub fn with_positions(self, nodes: impl Into<Arc<[[f64; 2]]>>) -> Self {
         Self {
             nodes: nodes.into(),
             ..self
         }
     }
 
-    /// Adds the places of the nodes as far as `other` has them.
+    /// Adds the positions of the nodes as far as `other` has them.
     #[must_use]
-    pub fn with_places_of(self, other: &Self) -> Self {
-        self.with_places(Arc::clone(&other.nodes))
+    pub fn with_positions_of(self, other: &Self) -> Self {
+        self.with_positions(Arc::clone(&other.nodes))
     }
 
     /// The elements with memory that all copies share.
@@ -151,7 +151,7 @@ impl Connectivity {
         unknowns.map(|unknown| u[*unknown as usize]).collect()
     }
 
-    /// The places of the nodes, with two unknowns each; none if they are not known.
+    /// The positions of the nodes, with two unknowns each; none if they are not known.
     pub fn nodes(&self) -> &Arc<[[f64; 2]]> {
         &self.nodes
     }

@@ -6,10 +6,10 @@ use crate::statistics::extremes;
 /// Most vertices of a part that is not divided any more.
 const LEAF: usize = 9;
 
-/// An order of elimination of the unknowns of a pattern from the place of each one: the body is divided at the middle
+/// An order of elimination of the unknowns of a pattern from the position of each one: the body is divided at the middle
 /// of its longer side, the unknowns at the cut come after those of both halves, and so on in the halves.
 ///
-/// Neighbouring unknowns of one place stay together.
+/// Neighbouring unknowns of one position stay together.
 ///
 /// # References
 /// A. George, SIAM J. Numer. Anal. 10, 345 (1973), doi:10.1137/0710032
@@ -32,7 +32,7 @@ enum Half {
     Upper,
 }
 
-/// Runs of unknowns of one place, and their couplings.
+/// Runs of unknowns of one position, and their couplings.
 struct Graph {
     /// Where the unknowns of each vertex begin.
     starts: Vec<usize>,

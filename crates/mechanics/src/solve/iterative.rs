@@ -14,7 +14,7 @@ pub enum LinearSolver {
     Automatic,
     /// By a sparse Cholesky factor.
     Direct,
-    /// By conjugate gradients with multigrid, where the places of the nodes are known and the tangent is symmetric;
+    /// By conjugate gradients with multigrid, where the positions of the nodes are known and the tangent is symmetric;
     /// by a factor where the iteration does not converge.
     Multigrid,
 }
@@ -67,7 +67,7 @@ impl LinearSolver {
 }
 
 impl Iterative {
-    /// Prepares the tangent of a potential; `None` where the places of its nodes are not known, or where it has a part that is not
+    /// Prepares the tangent of a potential; `None` where the positions of its nodes are not known, or where it has a part that is not
     /// symmetric.
     pub fn new(assembly: &Assembly, potential: &dyn Potential) -> Option<Self> {
         let nodes = Nodes::new(assembly.free(), assembly.positions()?);

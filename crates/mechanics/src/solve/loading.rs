@@ -80,10 +80,10 @@ pub trait Loading {
         true
     }
 
-    /// Names an element of the potential with its place, for messages.
+    /// Names an element of the potential with its position, for messages.
     fn describe(&self, element: usize) -> String;
 
-    /// Names an unknown with its place, for messages.
+    /// Names an unknown with its position, for messages.
     fn describe_unknown(&self, unknown: usize) -> String;
 }
 

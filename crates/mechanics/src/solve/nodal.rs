@@ -15,14 +15,14 @@ pub use matrix::NodalMatrix;
 pub struct Nodes {
     /// For each unknown: its node, and 0 or 1.
     of: Vec<(u32, u8)>,
-    /// The place of each node, relative to the middle of all and to their extent.
+    /// The position of each node, relative to the middle of all and to their extent.
     positions: Vec<[f64; 2]>,
     /// Which components of each node are unknowns.
     free: Vec<[bool; 2]>,
 }
 
 impl Nodes {
-    /// The nodes of some unknowns, ascending, with their places: unknowns 2 n and 2 n + 1 belong to node n.
+    /// The nodes of some unknowns, ascending, with their positions: unknowns 2 n and 2 n + 1 belong to node n.
     pub fn new(unknowns: &[usize], all_places: impl Iterator<Item = [f64; 2]>) -> Self {
         let mut of = Vec::with_capacity(unknowns.len());
         let count = unknowns.chunk_by(|a, b| a / 2 == b / 2).count();

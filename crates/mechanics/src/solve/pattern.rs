@@ -1,6 +1,6 @@
 //! Where the entries of a symmetric sparse matrix are stored.
 
-/// The places of the entries of a symmetric matrix: lower triangle by columns, rows ascending.
+/// The positions of the entries of a symmetric matrix: lower triangle by columns, rows ascending.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct SymmetricPattern {
     column_starts: Vec<usize>,
@@ -26,7 +26,7 @@ impl SymmetricPattern {
         }
     }
 
-    /// Pattern of columns that begin at some places, each with its diagonal and rows below, ascending.
+    /// Pattern of columns that begin at some positions, each with its diagonal and rows below, ascending.
     pub(super) fn of_columns(column_starts: Vec<usize>, rows: Vec<usize>) -> Self {
         Self {
             column_starts,

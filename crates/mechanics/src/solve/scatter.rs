@@ -4,13 +4,13 @@ use super::connectivity::Connectivity;
 use super::grouped::grouped;
 use super::pattern::SymmetricPattern;
 
-/// No free unknown, or no place.
+/// No free unknown, or no position.
 pub const NOWHERE: u32 = u32::MAX;
 
 /// Where the entries of element matrices are added.
 #[derive(Debug, Default)]
 pub struct Scatter {
-    /// For each element, for each entry of its lower triangle, row by row: its place, or [`NOWHERE`].
+    /// For each element, for each entry of its lower triangle, row by row: its position, or [`NOWHERE`].
     positions: Vec<u32>,
     starts: Vec<usize>,
 }
@@ -83,7 +83,7 @@ impl Scatter {
         }
     }
 
-    /// The places of the lower triangle of an element, row by row.
+    /// The positions of the lower triangle of an element, row by row.
     pub fn of(&self, element: usize) -> &[u32] {
         &self.positions[self.starts[element]..self.starts[element + 1]]
     }

@@ -45,7 +45,7 @@ pub fn gather(positions: &[usize], x: &[f64]) -> Vec<f64> {
     positions.iter().map(|position| x[*position]).collect()
 }
 
-/// A vector of so many entries: the given ones at their places, zero elsewhere.
+/// A vector of so many entries: the given ones at their positions, zero elsewhere.
 pub fn spread(positions: &[usize], entries: &[f64], count: usize) -> Vec<f64> {
     let mut all = vec![0.0; count];
     for (position, entry) in positions.iter().zip(entries) {

@@ -137,7 +137,7 @@ struct Workspace<const NODES: usize> {
     sides: [[f64; MOST]; 2],
 }
 
-/// The numbers of a vector that begin at a place.
+/// The numbers of a vector that begin at a position.
 #[inline(always)]
 fn load<S: Simd>(numbers: &[f64], position: usize) -> S::f64s {
     S::as_simd_f64s(&numbers[position..position + S::F64_LANES]).0[0]

@@ -4,7 +4,7 @@ use super::sweep::{Part, sum};
 use crate::mesh::{self, lobatto};
 use crate::multigrid::{Interpolation, Lines};
 
-/// Places and lengths that differ by less are equal.
+/// Positions and lengths that differ by less are equal.
 const POSITION_TOLERANCE: f64 = 1e-9;
 
 /// The degree from which on elements' own polynomials interpolate as well as cubics.
@@ -205,7 +205,7 @@ impl Field {
         (self.product(self) / self.components[0].len() as f64).sqrt()
     }
 
-    /// The root mean square over the nodes of some lines and some places on them.
+    /// The root mean square over the nodes of some lines and some positions on them.
     pub fn size_at(&self, [lines, nodes]: &[Vec<usize>; 2]) -> f64 {
         let line = |component: &[f64], line: usize| -> f64 {
             let line = &component[line * self.width..][..self.width];

@@ -104,7 +104,7 @@ fn internal_forces(
     Ok((residual, rows))
 }
 
-/// The longer side of a box around the free unknowns in mm; 1 where their places are not known.
+/// The longer side of a box around the free unknowns in mm; 1 where their positions are not known.
 fn extent(assembly: &Assembly) -> f64 {
     assembly.positions().map_or(1.0, |positions| {
         let [low, high] = bounding_box(positions);

@@ -141,7 +141,7 @@ impl<L: BodyLaw> BodySheet<L> {
     }
 }
 
-/// The root of a rising function between two places: by secants whose end that stays counts half (Illinois), and by halves where they are slow.
+/// The root of a rising function between two positions: by secants whose end that stays counts half (Illinois), and by halves where they are slow.
 fn root_between([mut low, mut high]: [f64; 2], function: impl Fn(f64) -> f64) -> f64 {
     let (mut below, mut above) = (function(low), function(high));
     let mut stayed = 0_i32;
@@ -173,8 +173,8 @@ fn root_between([mut low, mut high]: [f64; 2], function: impl Fn(f64) -> f64) ->
     high
 }
 
-/// Of the pieces between ascending places, finds one over which a function rises through zero, and whose middle is
-/// nearest to a number. Nearer ones are checked first, and every place once.
+/// Of the pieces between ascending positions, finds one over which a function rises through zero, and whose middle is
+/// nearest to a number. Nearer ones are checked first, and every position once.
 fn rising(
     position: impl Fn(usize) -> f64,
     function: impl Fn(f64) -> f64,

@@ -5,7 +5,7 @@ use crate::error::Diagnostic;
 /// Apparent faults that may be intended.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Exemptions {
-    /// Slits: neighbouring cells with nodes of their own at the same places.
+    /// Slits: neighbouring cells with nodes of their own at the same positions.
     pub seams: bool,
     /// Parts that are not attached to each other.
     pub parts: bool,
@@ -43,7 +43,7 @@ impl Exemptions {
     }
 }
 
-/// The number of faults of a kind, and the places of the first ones.
+/// The number of faults of a kind, and the positions of the first ones.
 #[derive(Default)]
 pub struct Finding {
     pub count: usize,
@@ -93,7 +93,7 @@ impl Finding {
     }
 }
 
-/// A place with five digits.
+/// A position with five digits.
 pub fn at([x, y]: [f64; 2]) -> String {
     format!("({}, {})", digits(x), digits(y))
 }

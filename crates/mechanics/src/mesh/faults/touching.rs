@@ -10,7 +10,7 @@ use crate::mesh::cells::Mesh;
 use crate::mesh::geometry::{bounding_box, distance};
 use crate::mesh::parts::Parts;
 
-/// Places nearer than this share of the shortest edge around are the same place.
+/// Positions nearer than this share of the shortest edge around are the same position.
 const NEAR: f64 = 1e-3;
 /// A node is inside of a cell when it lies this far from its sides, in natural coordinates.
 const INSIDE: f64 = 1e-2;
@@ -32,7 +32,7 @@ pub fn faults(sides: &Sides, allowed: Exemptions) -> Vec<Diagnostic> {
         hanging.retain(|(node, side)| boundary.is_neighbour(*node, *side));
     }
     let seam = boundary.seam(&doubled);
-    // A node that hangs on both sides of a seam, or on a side whose own node is at its place, is doubled.
+    // A node that hangs on both sides of a seam, or on a side whose own node is at its position, is doubled.
     let doubled: BTreeSet<usize> = doubled.into_iter().flatten().collect();
     let hanging: BTreeSet<usize> = hanging.into_iter().map(|(node, _)| node).collect();
     let mut diagnostics = Vec::new();
@@ -144,7 +144,7 @@ impl<'a> Boundary<'a> {
         around.filter_map(touch).collect()
     }
 
-    /// The point of a side that is nearest to a place beside it.
+    /// The point of a side that is nearest to a position beside it.
     fn foot(&self, side: Side, position: [f64; 2]) -> Option<[f64; 2]> {
         let [a, b] = side.ends.map(|node| self.node(node));
         let bow = self.bow(side);

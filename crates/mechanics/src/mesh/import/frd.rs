@@ -21,7 +21,7 @@ use crate::mesh::cell_shape::CellShape;
 /// A file, before a step is chosen.
 #[derive(Default)]
 pub struct Results {
-    /// Places and cells.
+    /// Positions and cells.
     pub raw: Raw,
     /// The time and the displacements of every step, in the order of the file.
     pub steps: Vec<(f64, HashMap<u64, [f64; 2]>)>,

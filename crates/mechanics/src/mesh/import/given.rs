@@ -11,7 +11,7 @@ use crate::mesh::cells::Mesh;
 /// Nodes, cells and groups as another program has them.
 #[derive(Clone, Debug, Default)]
 pub struct MeshData {
-    /// The places of the nodes, in the unit that the [reading](MeshReading) names; z is the same everywhere.
+    /// The positions of the nodes, in the unit that the [reading](MeshReading) names; z is the same everywhere.
     pub positions: Vec<[f64; 3]>,
     /// The cells: the numbers of their nodes among `positions`, in VTK's order.
     pub cells: Vec<(CellShape, Vec<usize>)>,

@@ -285,7 +285,7 @@ fn entities(text: &str, names: &Names) -> Result<HashMap<(i64, i64), Vec<String>
     for (dimension, count) in (0..).zip(counts) {
         for _ in 0..count {
             let tag: i64 = words.next()?;
-            // A point's place, or the box of a curve or a surface.
+            // A point's position, or the box of a curve or a surface.
             words.skip(if dimension == 0 { 3 } else { 6 })?;
             let mut entity_groups = Vec::new();
             for _ in 0..words.next::<usize>()? {

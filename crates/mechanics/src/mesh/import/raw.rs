@@ -33,10 +33,10 @@ pub type Displacements = HashMap<u64, [f64; 2]>;
 /// A step of a field: its time, where the file states it, and its displacements.
 pub type Step = (Option<f64>, Displacements);
 
-/// What a file holds, before it is a flat mesh: places in the file's unit, and elements by their kinds.
+/// What a file holds, before it is a flat mesh: positions in the file's unit, and elements by their kinds.
 #[derive(Default)]
 pub struct Raw {
-    /// Places by the file's own number.
+    /// Positions by the file's own number.
     pub positions: HashMap<u64, [f64; 3]>,
     /// Cells in the order of the file.
     pub cells: Vec<(CellShape, Vec<u64>)>,

@@ -13,7 +13,7 @@ impl<'a> Polygon<'a> {
         self.0.iter().zip(next).map(|(a, b)| [*a, *b])
     }
 
-    /// Places along x where the line crosses a height, ascending.
+    /// Positions along x where the line crosses a height, ascending.
     pub fn crossings(self, y: f64) -> Vec<f64> {
         let across = self.edges().filter(|[a, b]| (a[1] > y) != (b[1] > y));
         let at = across.map(|[a, b]| a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]));
@@ -130,7 +130,7 @@ pub fn divided(line: &[[f64; 2]], size: f64) -> Vec<[f64; 2]> {
     pieces.collect()
 }
 
-/// A place where edges of lines cross or touch that do not follow each other.
+/// A position where edges of lines cross or touch that do not follow each other.
 pub fn crossing(lines: &[Polygon]) -> Option<[f64; 2]> {
     let mut edges: Vec<(usize, [[f64; 2]; 2])> = lines
         .iter()

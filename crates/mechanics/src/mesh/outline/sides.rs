@@ -4,7 +4,7 @@
 //! waist, no deeper than it is wide, belongs to the side that it lies in, however the specimen is turned, and so does a dent of a rough edge.
 //! Deeper ones, such as a cut or the inside of a U, belong to none: they are no part of what is gripped or pulled beside them. Where the hull bridges the angle
 //! between two sides, as that of an L, its edges are named by where they face themselves. Among scattered markers corners are rounded: where
-//! four sides are not seen from corner to corner, they go between the places where the hull turns over some length.
+//! four sides are not seen from corner to corner, they go between the positions where the hull turns over some length.
 
 use super::corners::{CORNER, corners};
 use super::polygon::{distance, turn_between};

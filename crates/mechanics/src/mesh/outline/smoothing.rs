@@ -230,7 +230,7 @@ impl Followed<'_> {
         }
     }
 
-    /// The places on the smooth curve through all points, from the first one on; `None` where they lie on none.
+    /// The positions on the smooth curve through all points, from the first one on; `None` where they lie on none.
     fn through(&self, spacing: f64) -> Option<Vec<[f64; 2]>> {
         let off = self.at.iter().zip(self.line).map(|(at, point)| {
             let position = self.position(*at);
@@ -258,7 +258,7 @@ impl Followed<'_> {
         Some(along.chain(last.copied()).collect())
     }
 
-    /// The place at an arc length on the line itself.
+    /// The position at an arc length on the line itself.
     fn on_the_line(&self, arc: f64) -> [f64; 2] {
         let last = self.at.partition_point(|at| *at <= arc).max(1) - 1;
         let next = (last + 1) % self.line.len();

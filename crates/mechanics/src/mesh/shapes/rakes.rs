@@ -52,7 +52,7 @@ impl Rakes {
         (0..tines).map(move |tine| middle + (tine as f64 - 0.5 * (tines - 1) as f64) * spacing)
     }
 
-    /// The first and the last place of the sheet along an axis.
+    /// The first and the last position of the sheet along an axis.
     fn ends(&self, axis: usize) -> [f64; 2] {
         match axis {
             0 => [0.0, self.size[0]],
@@ -76,7 +76,7 @@ impl Rakes {
         .collect()
     }
 
-    /// All places of centres along an axis, ascending.
+    /// All positions of centres along an axis, ascending.
     fn positions(&self, axis: usize) -> Vec<f64> {
         let [low, high] = self.ends(axis);
         let mut positions: Vec<f64> = self.row(axis).collect();
@@ -228,7 +228,7 @@ impl Rakes {
         }
     }
 
-    /// The place on the nearest tine of a group of tines; `None` for the straight sides.
+    /// The position on the nearest tine of a group of tines; `None` for the straight sides.
     pub fn on_tine(&self, group: &str, [x, y]: [f64; 2]) -> Option<[f64; 2]> {
         let side = SIDES.iter().position(|(_, tines)| *tines == group)?;
         let distance = |[a, b]: &[f64; 2]| (x - a).hypot(y - b);

@@ -99,7 +99,7 @@ fn the_tangent_of_a_pressure_that_ends_freely_is_complete() {
             product[coupling.row] += coupling.stiffness * direction[coupling.column];
             product[coupling.column] -= coupling.stiffness * direction[coupling.row];
         }
-        // Forces are quadratic in the places: one long step is exact.
+        // Forces are quadratic in the positions: one long step is exact.
         let at = |sign: f64| {
             let mut residual = vec![0.0; size];
             let moved: Vec<f64> = u

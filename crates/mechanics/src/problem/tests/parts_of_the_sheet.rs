@@ -7,14 +7,14 @@ use crate::mesh::{CellShape, Mesh};
 use crate::problem::boundary_conditions::Support;
 use crate::units::parse_linear_length;
 
-/// Names the nodes of a mesh at the places where `inside` holds.
+/// Names the nodes of a mesh at the positions where `inside` holds.
 fn name(mesh: &mut Mesh, group: &str, inside: impl Fn([f64; 2]) -> bool) {
     let nodes = (0..mesh.nodes.len()).filter(|node| inside(mesh.nodes[*node]));
     let nodes: BTreeSet<usize> = nodes.collect();
     mesh.name_nodes(group, &nodes);
 }
 
-/// The cells of a mesh between two places along x, with the groups `left` and `right`.
+/// The cells of a mesh between two positions along x, with the groups `left` and `right`.
 fn part(mesh: &Mesh, [from, to]: [f64; 2]) -> Mesh {
     let cells = (0..mesh.cell_count()).filter(|cell| {
         let [x, _] = mesh.centre(*cell);

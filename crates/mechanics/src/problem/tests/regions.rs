@@ -82,7 +82,7 @@ fn forces_of_strips_in_parallel_add() {
             (solution.reactions[0][0] / exact - 1.0).abs() < 1e-8,
             "{shape:?}"
         );
-        // Each place has the stress of its own law.
+        // Each position has the stress of its own law.
         let sheet = problem.deformed(&mesh, &solution.state);
         let middle = mesh.middle()[1];
         for (y, stress) in [(middle - 3.0, soft), (middle + 3.0, stiff)] {

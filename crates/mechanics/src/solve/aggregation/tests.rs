@@ -81,7 +81,7 @@ fn sheet(cells: [usize; 2], size: [f64; 2], slides: bool, order: impl Fn(usize) 
         ]);
     }
     Sheet {
-        connectivity: connectivity.with_places(positions),
+        connectivity: connectivity.with_positions(positions),
         held,
         stiffness: rectangle(h),
     }
