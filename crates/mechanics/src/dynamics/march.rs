@@ -322,7 +322,7 @@ impl<'a> March<'a> {
     }
 
     /// The energy in mJ that steps have gained without work, or lost where they must not.
-    fn astray(&self, energy: &EnergyBalance, trust: Trust) -> f64 {
+    fn energy_error(&self, energy: &EnergyBalance, trust: Trust) -> f64 {
         let gain = energy.total() - self.pace.from.total();
         let viscous_work = energy.viscous_work - self.pace.from.viscous_work;
         let created = match trust {
@@ -351,9 +351,9 @@ impl<'a> March<'a> {
             next.memory = self.motion.memory_after(&at.memory, &next, step)?;
             at = next;
         }
-        let astray = self.astray(&at.energy, trust);
+        let energy_error = self.energy_error(&at.energy, trust);
         let largest = at.energy.largest().max(start.energy.largest());
-        if astray.is_finite() && astray <= LARGEST_ENERGY_ERROR * largest {
+        if energy_error.is_finite() && energy_error <= LARGEST_ENERGY_ERROR * largest {
             return Ok(at);
         }
         Err(SolveFault::Explodes {

@@ -58,7 +58,7 @@ pub fn contradictions(
     }
     let diagnostics = conflicts
         .into_iter()
-        .map(|(pair, unknowns)| tell(supports, mesh, pair, &unknowns));
+        .map(|(pair, unknowns)| diagnostic(supports, mesh, pair, &unknowns));
     Ok(diagnostics.collect())
 }
 
@@ -84,7 +84,7 @@ fn conflict(a: Demand, b: Demand, rounding: f64) -> Option<Conflict> {
     }
 }
 
-fn tell(
+fn diagnostic(
     supports: &[(String, Support)],
     mesh: &Mesh,
     (earlier, later, conflict): (usize, usize, Conflict),

@@ -33,7 +33,7 @@ pub fn free_motions(mesh: &Mesh, constraints: &Constraints) -> Vec<Diagnostic> {
         for (position, body) in group.iter().enumerate() {
             let body_motions = motions.rows(3 * position, 3).into_owned();
             if let Some(motion) = bodies.describe(&body_motions) {
-                diagnostics.push(bodies.tell(*body, &motion));
+                diagnostics.push(bodies.diagnostic(*body, &motion));
             }
         }
     }
@@ -222,7 +222,7 @@ impl<'a> Bodies<'a> {
         format!("({:.decimals$}, {:.decimals$}) mm", tidy(x), tidy(y))
     }
 
-    fn tell(&self, body: usize, motion: &str) -> Diagnostic {
+    fn diagnostic(&self, body: usize, motion: &str) -> Diagnostic {
         let part = match self.cells.len() {
             1 => "the specimen".to_owned(),
             _ => format!(
