@@ -15,15 +15,13 @@ pub const EQUILIBRIUM: &str = "equilibrium";
 pub const SUPPORTS: &str = "supports";
 
 /// Names of a mesh's cells and nodes by their positions.
-struct Names<'a>(&'a Model<'a>);
-
-impl Describe for Names<'_> {
+impl Describe for Model<'_> {
     fn element(&self, element: usize) -> String {
-        self.0.describe(element)
+        self.describe(element)
     }
 
     fn unknown(&self, unknown: usize) -> String {
-        self.0.describe_unknown(unknown)
+        self.describe_unknown(unknown)
     }
 }
 
@@ -62,8 +60,7 @@ pub fn correct(
         Box::new(Equilibrium::new(EQUILIBRIUM, &*potential, &assembly, free)),
         Box::new(Linear::prescribed(SUPPORTS, size, supports)),
     ];
-    let names = Names(model);
-    let corrector = Corrector::new(conditions, vec![1.0; size], settings).named(&names);
+    let corrector = Corrector::new(conditions, vec![1.0; size], settings).named(model);
     correct_by(&corrector, model, data, start, stage, true)
 }
 
