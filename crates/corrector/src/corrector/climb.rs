@@ -263,11 +263,8 @@ impl<'a> Climb<'a> {
 
     /// Without a factor of the coarsest operator that was assembled last, no iteration is possible.
     fn check_operators(&self) -> Result<(), SolveFault> {
-        if self.multigrid.is_factorised() {
-            Ok(())
-        } else {
-            Err(SolveFault::NotPositiveDefinite)
-        }
+        let factorised = self.multigrid.is_factorised().then_some(());
+        factorised.ok_or(SolveFault::NotPositiveDefinite)
     }
 
     /// F(u) in N at the nodes of the finest grid: the reactions at the grips; `None` where J is not positive.

@@ -36,7 +36,7 @@ pub(super) use forms::{project_curved, weighted_qr};
 /// Which form of the projection is used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Solver {
-    /// By size and kind.
+    /// The form that suits the size and the kind of the system.
     Automatic,
     /// Dense QR factorisation of W^(−½) Bᵀ.
     Dense,

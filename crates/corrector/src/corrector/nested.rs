@@ -52,7 +52,7 @@ const SPRINGS: NewtonSettings = NewtonSettings {
     max_iterations: 8,
 };
 
-/// On all meshes but the finest: the change to the next mesh is far larger.
+/// The tolerance on all meshes but the finest: the change to the next mesh is far larger.
 const COARSER: NewtonSettings = NewtonSettings {
     tolerance: 1e-4,
     max_iterations: 60,

@@ -11,7 +11,7 @@ pub struct Interpolation {
 }
 
 impl Interpolation {
-    /// By the polynomials through so many nodes around each position, or through all where there are fewer.
+    /// Interpolates by the polynomials through so many nodes around each position, or through all where there are fewer.
     pub fn around(nodes: &[f64], positions: &[f64], width: usize) -> Self {
         let width = width.min(nodes.len());
         Self::through(nodes, positions, width, |after| {
@@ -19,7 +19,7 @@ impl Interpolation {
         })
     }
 
-    /// By the polynomials of a degree through the nodes of each element.
+    /// Interpolates by the polynomials of a degree through the nodes of each element.
     pub fn of_elements(nodes: &[f64], positions: &[f64], degree: usize) -> Self {
         let last = (nodes.len() - 1) / degree - 1;
         Self::through(nodes, positions, degree + 1, |after| {
@@ -27,7 +27,7 @@ impl Interpolation {
         })
     }
 
-    /// By the polynomials through so many nodes, the first of which follows from the number of nodes up to the position.
+    /// Interpolates by the polynomials through so many nodes, the first of which follows from the number of nodes up to the position.
     fn through(
         nodes: &[f64],
         positions: &[f64],
@@ -110,7 +110,7 @@ impl Axis {
 pub struct Transfer([Axis; 2]);
 
 impl Transfer {
-    /// Between two grids with the given coordinates along X and Y.
+    /// The prolongation between two grids with the given coordinates along X and Y.
     pub fn new(coarse: &[Vec<f64>; 2], fine: &[Vec<f64>; 2]) -> Self {
         Self([0, 1].map(|axis| Axis::new(&coarse[axis], &fine[axis])))
     }

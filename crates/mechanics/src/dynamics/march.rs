@@ -28,7 +28,7 @@ pub enum Step {
     /// Half of the longest stable step for Verlet, computed from the stiffness repeatedly; a hundredth of the slowest
     /// period for generalised-α, or of a shorter period of oscillating supports or forces.
     Automatic,
-    /// At most so many s.
+    /// The longest step in s.
     AtMost(f64),
 }
 
@@ -114,7 +114,7 @@ struct March<'a> {
 
 /// Where a run of steps ends.
 struct Stop {
-    /// In s.
+    /// The time in s.
     time: f64,
     /// Whether it is an instant.
     is_instant: bool,

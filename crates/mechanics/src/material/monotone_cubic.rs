@@ -16,7 +16,7 @@ pub struct Cubic {
 }
 
 impl Cubic {
-    /// Between two points (x, f) with slopes there.
+    /// The cubic between two points (x, f) with slopes there.
     pub fn new([[from, low], [to, high]]: [[f64; 2]; 2], [begin, end]: [f64; 2]) -> Self {
         let h = to - from;
         let mean = (high - low) / h;

@@ -5,7 +5,7 @@
 pub struct Neighbours(Vec<[Option<usize>; 4]>);
 
 impl Neighbours {
-    /// Of so many cells, by pairs of edges that are one: each by its cell and its number there.
+    /// The neighbours of so many cells, by pairs of edges that are one: each by its cell and its number there.
     pub fn new(cells: usize, pairs: impl Iterator<Item = [(usize, usize); 2]>) -> Self {
         let mut across = vec![[None; 4]; cells];
         for [(one, edge), (other, edge_of_other)] in pairs {

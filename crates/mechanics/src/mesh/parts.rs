@@ -4,7 +4,7 @@
 pub struct Parts(Vec<usize>);
 
 impl Parts {
-    /// Of so many members.
+    /// So many members, each a part of its own.
     pub fn new(members: usize) -> Self {
         Self((0..members).collect())
     }

@@ -63,7 +63,7 @@ impl Polygon {
 /// An edge with its neighbours, and the turns of the curve's ends relative to its own, in rad.
 struct Piece<'a> {
     edge: &'a [usize],
-    /// From the first end to the last one.
+    /// The vector from the first end to the last one.
     chord: [f64; 2],
     /// Direction at both ends.
     tangents: [[f64; 2]; 2],

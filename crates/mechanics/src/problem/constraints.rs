@@ -16,7 +16,7 @@ pub const FACTORS: [f64; 3] = [0.3, 0.7, 1.0];
 /// How a held unknown moves.
 #[derive(Clone, Copy)]
 pub enum Motion {
-    /// In proportion to the load factor, in mm at 1.
+    /// A displacement in proportion to the load factor, in mm at 1.
     Straight(f64),
     /// Like a coordinate of a point, at a position in mm relative to the centre, that is turned by an angle at 1.
     Turn {

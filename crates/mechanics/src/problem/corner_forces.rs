@@ -61,7 +61,7 @@ pub struct Part {
     pub at: usize,
     /// The node of whose reaction it is a multiple.
     pub of: usize,
-    /// That multiple.
+    /// The multiple of the reaction.
     pub factor: f64,
 }
 

@@ -113,7 +113,7 @@ impl Ascent {
 }
 
 impl Climb<'_> {
-    /// From the corrected field on the first grid to the finest one.
+    /// Climbs from the corrected field on the first grid to the finest one.
     pub(super) fn ascend(
         &mut self,
         mut ascent: Ascent,

@@ -35,7 +35,7 @@ impl Climb<'_> {
         multipliers.map(|field| field.to_nodes()).map_err(fault)
     }
 
-    /// By the iteration, or by a sparse factor where the iteration does not converge.
+    /// Solves for the multipliers by the iteration, or by a sparse factor where the iteration does not converge.
     fn solve_multipliers(&mut self, data: &[f64], corrected: &Field) -> Result<Field, SolveFault> {
         let mut difference = Field::of_nodes(self.grid(), data);
         difference.add(-1.0, corrected);

@@ -121,7 +121,7 @@ fn stiffness_change<'a>(
     weights: impl Iterator<Item = (&'a usize, &'a f64)>,
 ) -> Result<SparseRows, Inadmissible> {
     const SHARE: f64 = 1e-5;
-    /// Of the body's length: the least size of u that gives the step, as near rest.
+    /// Least size of u that determines the step, near rest, as a share of the body's length.
     const LEAST: f64 = 1e-3;
     let mut direction = vec![0.0; u.len()];
     for (unknown, weight) in weights {

@@ -111,7 +111,7 @@ impl<'a> Boundary<'a> {
         ]
     }
 
-    /// From the middle of a side's chord to its middle.
+    /// The vector from the middle of a side's chord to its middle.
     fn bow(&self, side: Side) -> [f64; 2] {
         let [a, b] = side.ends.map(|node| self.node(node));
         side.middle.map_or([0.0; 2], |middle| {

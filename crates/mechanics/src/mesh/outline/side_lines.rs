@@ -26,7 +26,7 @@ pub struct SideLine {
 }
 
 impl SideLine {
-    /// Of a row of points; `None` where they are few, lie on the chord already, or do not follow one straight line.
+    /// The line of a row of points; `None` where they are few, lie on the chord already, or do not follow one straight line.
     pub fn of(row: &[[f64; 2]], spacing: f64) -> Option<Self> {
         let chord = [*row.first()?, *row.last()?];
         let is_exact = row

@@ -19,7 +19,7 @@ use crate::mesh::geometry::distance as length;
 /// Parabolas are fitted to so many spacings on either side, but to no more than this share of a closed line.
 const PARABOLA_REACH: f64 = 4.0;
 const SHARE: f64 = 0.125;
-/// But to so many spacings at least, and to so many points, and a little farther.
+/// Least reach of a parabola in spacings and in points, and the factor by which it goes beyond the last of these points.
 const LEAST: f64 = 2.5;
 const FEWEST: usize = 4;
 const WIDER: f64 = 1.3;
@@ -28,12 +28,12 @@ const WIDER: f64 = 1.3;
 const SIDE: f64 = 3.0;
 const CORNER: f64 = 40.0 * std::f64::consts::PI / 180.0;
 
-/// So do a longer and a shorter one by a turn of more than this, 75°: ends of strips with two or three rows of markers.
+/// A longer and a shorter straight edge meet at a corner by a turn of more than this, 75°: ends of strips with two or three rows of markers.
 const STRIP: f64 = 5.0;
 const END: f64 = 1.0;
 const SQUARE: f64 = 75.0 * std::f64::consts::PI / 180.0;
 
-/// And so do edges of any length by that turn if their points are as near as this, in spacings, to their chords, and one has three points or
+/// Edges of any length meet at a corner by that turn if their points are as near as this, in spacings, to their chords, and one has three points or
 /// more: sides of small grids. Steps along a curve or an oblique edge are farther off.
 const EXACT: f64 = 0.1;
 
