@@ -138,10 +138,9 @@ impl Viscosity for SheetViscosity<'_> {
             let branches = self.material.branches(part, now, motion.elapsed);
             let values = now.into_iter().chain(branches.into_iter().flatten());
             let start = index * self.of_point();
-            next[start..]
-                .iter_mut()
-                .zip(values)
-                .for_each(|(to, value)| *to = value);
+            for (to, value) in next[start..].iter_mut().zip(values) {
+                *to = value;
+            }
         }
         Ok(())
     }

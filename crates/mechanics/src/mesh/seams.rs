@@ -21,17 +21,14 @@ impl Mesh {
             .as_ref()?;
         let mut cell_of = vec![None; other.nodes.len()];
         for cell in 0..other.cell_count() {
-            other
-                .cell(cell)
-                .iter()
-                .for_each(|node| cell_of[*node] = Some(cell));
+            for node in other.cell(cell) {
+                cell_of[*node] = Some(cell);
+            }
         }
         let mut on_boundary = vec![false; other.nodes.len()];
-        other
-            .boundary()
-            .iter()
-            .flatten()
-            .for_each(|node| on_boundary[*node] = true);
+        for node in other.boundary().iter().flatten() {
+            on_boundary[*node] = true;
+        }
         let position = |node: usize| match cell_of[node].filter(|_| on_boundary[node]) {
             Some(cell) => {
                 let (start, _) = self.locate(other.centre(cell));

@@ -297,10 +297,9 @@ mod tests {
             (0..n).map(|i| vec![i, i + 1].into_iter().filter(|r| *r < n).collect()),
         );
         let mut values = vec![-1.0; pattern.entries()];
-        pattern
-            .diagonal()
-            .iter()
-            .for_each(|entry| values[*entry] = 2.0);
+        for entry in pattern.diagonal() {
+            values[*entry] = 2.0;
+        }
         (pattern, values)
     }
 
