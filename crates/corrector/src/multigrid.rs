@@ -16,7 +16,6 @@
 //! All sums run in an order that does not depend on the number of threads.
 
 mod assembled_line;
-mod blocks;
 mod coarsest;
 mod cycle;
 mod line;

@@ -2,7 +2,7 @@
 
 use pulp::NullaryFnOnce;
 
-use super::blocks::INVERSE;
+use super::line::INVERSE;
 
 /// P₁₁, P₁₂, P₂₂, Q₁₁, Q₁₂, Q₂₂, R₁₁, R₁₂, R₂₁, R₂₂ of the cells of one column, with a cell of no stiffness at either end.
 #[derive(Clone, Debug)]

@@ -17,8 +17,10 @@ use pulp::Arch;
 use rayon::prelude::*;
 
 use super::assembled_line::{AssembleLine, CellStiffness};
-use super::blocks::{EAST, ITSELF, NORTH, NORTH_EAST, SOUTH_EAST};
-use super::line::{COEFFICIENTS, LineResidual, LineStencil, SmoothLine};
+use super::line::{
+    COEFFICIENTS, EAST, ITSELF, LineResidual, LineStencil, NORTH, NORTH_EAST, SOUTH_EAST,
+    SmoothLine,
+};
 use super::vector::{Lines, Neighbours, Vector};
 
 /// The order of a sweep over all lines.
