@@ -14,3 +14,13 @@ pub mod solve;
 #[cfg(test)]
 use gelbench_base::budget;
 use gelbench_base::{document, error, statistics, units};
+
+/// Asserts that a number differs from an expected one by less than a share of it.
+#[cfg(test)]
+#[track_caller]
+fn assert_near(computed: f64, expected: f64, share: f64, context: &dyn std::fmt::Debug) {
+    assert!(
+        (computed / expected - 1.0).abs() < share,
+        "{context:?}: {computed} instead of {expected}"
+    );
+}

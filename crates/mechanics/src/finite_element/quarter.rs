@@ -244,10 +244,7 @@ mod tests {
                     folded.factor
                 );
                 let energies = [folded, full].map(|state| state.convergence.energy);
-                assert!(
-                    (energies[0] / energies[1] - 1.0).abs() < 1e-9,
-                    "{card} {energies:?}"
-                );
+                crate::assert_near(energies[0], energies[1], 1e-9, &(&card, &energies));
             }
             let expected = model.influences(&full, Side::Right.name(), 0);
             for (folded, full) in quarter.influences(&folded).unwrap().iter().zip(&expected) {

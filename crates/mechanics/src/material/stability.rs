@@ -140,10 +140,7 @@ mod tests {
             };
             let mixed = value(1.0, 1.0) - value(1.0, -1.0) - value(-1.0, 1.0) + value(-1.0, -1.0);
             let expected = mixed / (4.0 * step * step);
-            assert!(
-                (computed[(i, j)] / expected - 1.0).abs() < 1e-5,
-                "{i}{j}: {computed} {expected}"
-            );
+            crate::assert_near(computed[(i, j)], expected, 1e-5, &(&i, &j, &computed));
         }
     }
 

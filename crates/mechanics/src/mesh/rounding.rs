@@ -349,17 +349,9 @@ mod tests {
         assert_eq!((polygon.group.as_str(), polygon.edges), ("hole", corners));
         let angle = std::f64::consts::PI / corners as f64;
         let sagitta = 2.0 * (1.0 - angle.cos());
-        assert!(
-            (polygon.sagitta / sagitta - 1.0).abs() < 0.3,
-            "{} {sagitta}",
-            polygon.sagitta
-        );
+        crate::assert_near(polygon.sagitta, sagitta, 0.3, &"");
         let lacking = 300.0 - 4.0 * std::f64::consts::PI - mesh.area();
-        assert!(
-            (polygon.area / lacking - 1.0).abs() < 0.05,
-            "{} {lacking}",
-            polygon.area
-        );
+        crate::assert_near(polygon.area, lacking, 0.05, &"");
         assert_eq!(hole.mesh(8, CellShape::Triangle6).polygons(), []);
     }
 }

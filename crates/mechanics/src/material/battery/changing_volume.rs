@@ -88,10 +88,7 @@ fn stress_and_thickness_of_the_usual_tests_are_the_textbooks() {
                     let stress = principal(expected)[0];
                     let computed = mode.nominal_stress(&*law, strain);
                     let context = format!("{name} {:?} {mode:?} {strain}", law.plane_state());
-                    assert!(
-                        (computed / stress - 1.0).abs() < 1e-9,
-                        "{context}: {computed} {stress}"
-                    );
+                    crate::assert_near(computed, stress, 1e-9, &context);
                     let state = mode.gradient(&*law, strain).unwrap();
                     let thickness = law.thickness_stretch(&Kinematics::new(&state).unwrap());
                     assert!(
@@ -137,10 +134,7 @@ fn simple_shear_is_the_textbooks() {
                 let slope = first * first / (1.0 + first * first);
                 let expected = slope * (w[0] - w[1] / (first * first));
                 let computed = curve::simple_shear(&*law, amount);
-                assert!(
-                    (computed / expected - 1.0).abs() < 1e-10,
-                    "{name}: {computed} {expected}"
-                );
+                crate::assert_near(computed, expected, 1e-10, &name);
             }
         }
     }
@@ -154,10 +148,7 @@ fn simple_shear_is_the_textbooks() {
 #[test]
 fn laws_with_closed_forms_have_them() {
     let near = |computed: f64, expected: f64, label: &str| {
-        assert!(
-            (computed / expected - 1.0).abs() < 1e-11,
-            "{label}: {computed} {expected}"
-        );
+        crate::assert_near(computed, expected, 1e-11, &label);
     };
     let of = |law: &str, parameters: &str| samples::card(law, parameters).law;
     let foam = of(
@@ -207,10 +198,7 @@ fn small_strain_moduli_are_those_of_shear_and_bulk_modulus() {
             PlaneState::Stress => young,
             PlaneState::Strain => young / (1.0 - nu * nu),
         };
-        assert!(
-            (law.youngs_modulus() / expected - 1.0).abs() < 1e-10,
-            "{name}"
-        );
+        crate::assert_near(law.youngs_modulus(), expected, 1e-10, &name);
         let thinning = law.thickness_gradient(&Kinematics::rest());
         let across = match law.plane_state() {
             PlaneState::Stress => -nu / (1.0 - nu),

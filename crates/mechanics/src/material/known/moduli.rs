@@ -161,10 +161,7 @@ mod tests {
                 bulk: of(3),
             };
             let solved = stated.solved().unwrap();
-            assert!(
-                (solved.shear.unwrap() / shear - 1.0).abs() < 1e-14,
-                "{stated:?}"
-            );
+            crate::assert_near(solved.shear.unwrap(), shear, 1e-14, &stated);
             assert!(
                 (solved.poisson_ratio.unwrap() - ratio).abs() < 1e-14,
                 "{stated:?}"

@@ -62,10 +62,7 @@ fn the_usual_tests_unload_as_the_formula_of_ogden_and_roxburgh_says() {
                 let x = (most - energy).max(0.0) / (softening.m + softening.beta * most);
                 let expected = stress * (1.0 - erf(x) / softening.r);
                 let computed = mode.nominal_stress(&law, stretch - 1.0);
-                assert!(
-                    (computed / expected - 1.0).abs() < 1e-12,
-                    "{name} {stretch}: {computed} {expected}"
-                );
+                crate::assert_near(computed, expected, 1e-12, &(&name, &stretch));
             }
         }
     }

@@ -100,11 +100,7 @@ fn scattered_points_and_round_specimens_have_outlines() {
         })
         .collect();
     let traced = Outline::of_points(&points).unwrap();
-    assert!(
-        (traced.outline.area() / (100.0 * PI) - 1.0).abs() < 0.08,
-        "{}",
-        traced.outline.area()
-    );
+    crate::assert_near(traced.outline.area(), 100.0 * PI, 0.08, &"");
     assert!(traced.outline.holes.is_empty());
     let mesh = traced.outline.mesh(1.0, CellShape::Triangle3);
     assert!(smallest_angle(&mesh) > 20.0);

@@ -145,10 +145,7 @@ fn refined_meshes_come_back_to_the_outline() {
         shape.fit(&mut mesh);
         let direct = shape.mesh(12, CellShape::Triangle6).area();
         let fitted = mesh.area();
-        assert!(
-            (fitted / direct - 1.0).abs() < 2e-4,
-            "{shape:?}: {fitted} {direct}"
-        );
+        crate::assert_near(fitted, direct, 2e-4, &shape);
     }
 }
 

@@ -78,19 +78,13 @@ fn forces_of_strips_in_parallel_add() {
         let mesh = halves(1, shape);
         let problem = pulled(both([&laws[0], &laws[1]]), true);
         let solution = solved(&problem, &mesh, &["right"]);
-        assert!(
-            (solution.reactions[0][0] / exact - 1.0).abs() < 1e-8,
-            "{shape:?}"
-        );
+        crate::assert_near(solution.reactions[0][0], exact, 1e-8, &shape);
         // Each position has the stress of its own law.
         let sheet = problem.deformed(&mesh, &solution.state);
         let middle = mesh.middle()[1];
         for (y, stress) in [(middle - 3.0, soft), (middle + 3.0, stiff)] {
             let p = sheet.stress_at([10.0, y]).unwrap().first_piola_kirchhoff;
-            assert!(
-                (p[0] / stress - 1.0).abs() < 1e-8,
-                "{shape:?}: {p:?} {stress}"
-            );
+            crate::assert_near(p[0], stress, 1e-8, &(&shape, &p));
         }
     }
 }
@@ -116,10 +110,7 @@ fn strips_in_series_carry_the_same_force() {
         let mesh = halves(0, shape);
         let problem = pulled(both([&laws[0], &laws[1]]), false);
         let solution = solved(&problem, &mesh, &["right"]);
-        assert!(
-            (solution.reactions[0][0] / exact - 1.0).abs() < 1e-8,
-            "{shape:?}"
-        );
+        crate::assert_near(solution.reactions[0][0], exact, 1e-8, &shape);
         let sheet = problem.deformed(&mesh, &solution.state);
         let [ux, _] = sheet.displacement_at([12.0, mesh.middle()[1]]).unwrap();
         assert!((ux / (12.0 * first) - 1.0).abs() < 1e-8, "{shape:?}: {ux}");
@@ -150,10 +141,7 @@ fn forces_of_lattices_in_parallel_add() {
         };
         let usual = soft_force / exact(&soft);
         let ratio = mixed / (0.5 * (exact(&soft) + exact(&stiff)));
-        assert!(
-            (ratio / usual - 1.0).abs() < rounding,
-            "{shape:?}: {ratio} {usual}"
-        );
+        crate::assert_near(ratio, usual, rounding, &shape);
     }
 }
 
@@ -228,8 +216,5 @@ fn each_region_softens_by_its_own_law() {
     let work = model.work(&states[2]).unwrap();
     let most = soft.tension([1.0, 0.0], 0.4).energy;
     let exact = 0.5 * SIZE[0] * SIZE[1] * 2.0 * softening.dissipated(most);
-    assert!(
-        (work.dissipated / exact - 1.0).abs() < 1e-8,
-        "{work:?} {exact}"
-    );
+    crate::assert_near(work.dissipated, exact, 1e-8, &work);
 }

@@ -150,9 +150,5 @@ fn arcs_between_straight_edges_are_round() {
     let area: f64 = (0..6000)
         .map(|i| 0.02 * half(f64::from(i) * 0.01 + 0.005))
         .sum();
-    assert!(
-        (polygon_area(&outline.outer) / area - 1.0).abs() < 5e-3,
-        "{} {area}",
-        polygon_area(&outline.outer)
-    );
+    crate::assert_near(polygon_area(&outline.outer), area, 5e-3, &"");
 }
