@@ -38,7 +38,6 @@ mod sheet_figures;
 pub mod small_strain;
 mod springs;
 mod state;
-mod stress_chart;
 mod stretches;
 mod surface;
 mod viscous_stress;
@@ -61,11 +60,12 @@ pub use headline::{Gauge, Headline, LoadedSheet};
 pub use identification::{identification_json, identification_picture};
 pub use json::object;
 pub use material::{Material, properties};
+pub use nodal_sheet::Deformed;
 pub use picture_style::{Palette, PictureFormat, PictureStyle, PictureWidth};
 pub use report::{claims, pictures};
 pub use sampled::{Position, positions};
 pub use sheet::Sheet;
-pub use sheet_figures::{Deformed, SheetField, ShownFields, sheet_figures};
+pub use sheet_figures::{SheetField, ShownFields, sheet_figures};
 pub use springs::springs_csv;
 pub use state::{LocalState, cell_states, nodal_states};
 pub use stretches::{BESIDE_CORNERS, Stretches};
@@ -114,7 +114,7 @@ pub struct Step {
     pub models: Map<String, Value>,
 }
 
-/// Findings of a study or a case. Stored are those that the report of all cases has, not the fields and files of the case.
+/// The results of the models of a study or a case. Fields and files are not stored: the report of all cases does not need them.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct Outcome {
     /// Requirements, with the values found.
@@ -223,6 +223,13 @@ impl Results {
     pub fn warnings(&self) -> impl Iterator<Item = String> {
         let of_reading = self.read_warnings.iter().cloned();
         of_reading.chain(self.outcome.warnings())
+    }
+
+    /// Wall-clock times in s: that of the whole study, and those of its parts.
+    fn times(&self) -> impl Iterator<Item = (&str, f64)> {
+        let parts = self.outcome.times.iter();
+        let parts = parts.map(|(what, seconds)| (&**what, *seconds));
+        std::iter::once(("whole study", self.seconds)).chain(parts)
     }
 
     /// The headline for a terminal.

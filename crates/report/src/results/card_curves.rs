@@ -2,11 +2,11 @@
 
 use std::f64::consts::TAU;
 
-use super::stress_chart::stress_chart;
+use super::chart::stress_chart;
 use super::{Axis, Drawing, Line, LineChart, PALETTE, Stroke, material_chart};
 use crate::material::Card;
 use crate::material::curve::far_end;
-use crate::statistics::extremes;
+use crate::statistics::{extremes, farthest};
 
 const INK: [u8; 3] = [60, 60, 60];
 /// Points of a master curve.
@@ -136,8 +136,7 @@ fn loops(card: &Card) -> Option<LineChart> {
         0,
         Line::new("first loading", first, PALETTE[0], Stroke::Solid),
     );
-    let largest = lines[0].points.iter();
-    let largest = largest.fold(0.0, |most: f64, point| most.max(point[1].abs()));
+    let largest = farthest(lines[0].points.iter().map(|point| point[1])).abs();
     let (title, x) = ("Uniaxial loading and unloading", Axis::stretch());
     Some(stress_chart(title, x, "nominal stress", largest, lines))
 }

@@ -165,7 +165,7 @@ pub struct LineChart {
     pub lines: Vec<Line>,
     /// A band along x that is shaded, with its name.
     pub band: Option<([f64; 2], String)>,
-    /// What is said beside the names of the lines.
+    /// Remarks in the legend, beside the names of the lines.
     pub notes: Vec<String>,
 }
 
@@ -187,12 +187,29 @@ impl LineChart {
         }
     }
 
-    /// What a legend says of the dashes between markers; `None` where there are none.
+    /// The note of a legend on the dashes between markers; `None` where there are none.
     pub fn dashes(&self) -> Option<&'static str> {
         let joins = |line: &Line| line.is_dashed_between_points() && line.points.len() > 1;
         let any = self.lines.iter().any(joins);
         any.then_some("dashes: nothing computed")
     }
+}
+
+/// A chart of stresses in MPa, in the unit in which the largest of them, in MPa too, is neither long nor tiny.
+pub(super) fn stress_chart(
+    title: impl Into<String>,
+    x: Axis,
+    stress: &str,
+    largest: f64,
+    mut lines: Vec<Line>,
+) -> LineChart {
+    const UNITS: [(&str, f64); 3] = [("MPa", 1.0), ("kPa", 1e3), ("Pa", 1e6)];
+    let large = UNITS.into_iter().find(|(_, per)| per * largest >= 0.1);
+    let (unit, per_mpa) = large.unwrap_or(UNITS[2]);
+    for point in lines.iter_mut().flat_map(|line| &mut line.points) {
+        point[1] *= per_mpa;
+    }
+    LineChart::new(title, x, &*format!("{stress} [{unit}]"), lines)
 }
 
 #[cfg(test)]

@@ -46,7 +46,7 @@ pub struct MeshFigure {
     pub groups: Vec<NamedLines>,
 }
 
-/// A group of a mesh: lines along its edges, or points, each drawn as a line between equal places.
+/// A group of a mesh: lines along its edges, or points, each drawn as a line between equal positions.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct NamedLines {
     /// Its name.

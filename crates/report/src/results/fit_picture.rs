@@ -4,12 +4,12 @@ mod tests_alone;
 
 use std::path::Path;
 
+use super::chart::stress_chart;
 use super::fit::{notes, title_case};
-use super::stress_chart::stress_chart;
 use super::{Axis, Drawing, Line, LineChart, PALETTE, Scale, Stroke};
 use crate::calibration::{Fit, Test, TestData, Times};
 use crate::material::curve::Mode;
-use crate::statistics::extremes;
+use crate::statistics::{extremes, farthest};
 
 pub use tests_alone::tests_chart;
 
@@ -165,7 +165,7 @@ fn spread(points: Vec<[f64; 2]>, scale: Scale) -> Vec<[f64; 2]> {
 
 fn residual_chart(x: Axis, lines: Vec<Line>) -> LineChart {
     let points = lines.iter().flat_map(|line| &line.points);
-    let largest = points.fold(0.0, |most: f64, point| most.max(point[1].abs()));
+    let largest = farthest(points.map(|point| point[1])).abs();
     // Below the stresses, whose axis it shares.
     stress_chart("", x, "measured − fitted", largest, lines)
 }

@@ -34,7 +34,7 @@ impl GridCell {
 /// Points, cells, and arrays at both.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grid {
-    /// Places at rest in mm.
+    /// Positions at rest in mm.
     pub points: Vec<[f64; 2]>,
     /// The kinds of the cells.
     pub cells: Vec<GridCell>,

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use super::stress_chart::stress_chart;
+use super::chart::stress_chart;
 use super::{Axis, Drawing, Line, PALETTE, Stroke};
 use crate::calibration::{Fit, Group, GroupState};
 use crate::document::write_records;

@@ -1,4 +1,4 @@
-//! What a study of a sheet is computed for, in short: the force and displacement of its groups along the path, and where stress and stretch are
+//! The main results of a study of a sheet: the force and displacement of its groups along the path, and where stress and stretch are
 //! largest.
 
 use super::nodal_sheet::NodalSheet;
@@ -11,8 +11,8 @@ use crate::units::number;
 /// Most rows of the table of forces; of more, steps are left out.
 const MOST_ROWS: usize = 12;
 
-/// Forces, moments and displacements below this share of the largest say nothing at a glance.
-const NOTHING: f64 = 1e-4;
+/// Forces, moments and displacements below this share of the largest are negligible.
+const NEGLIGIBLE: f64 = 1e-4;
 
 /// Displacements below this share of the sheet's side, and forces below this share of those on a group's nodes, are rounding.
 const ROUNDING: f64 = 1e-12;
@@ -21,13 +21,13 @@ const ROUNDING: f64 = 1e-12;
 pub struct Headline<'a> {
     /// The model.
     pub model: &'a str,
-    /// What the steps are, as a head of a table.
+    /// The parameter along the steps, as a head of a table.
     pub along: &'static str,
     /// The names of the groups.
     pub groups: Vec<&'a str>,
     /// Each step in figures, with the states of its groups.
     pub steps: Vec<(String, Vec<GroupState>)>,
-    /// The state in which the largest values are looked for.
+    /// The state whose largest values are shown.
     pub state: LoadedSheet<'a>,
 }
 
@@ -50,18 +50,18 @@ pub struct LoadedSheet<'a> {
 pub struct Gauge {
     /// Both ends of its middle line at rest in mm.
     pub ends: [[f64; 2]; 2],
-    /// In words.
-    pub words: &'static str,
+    /// Its description.
+    pub description: &'static str,
 }
 
 impl Gauge {
     /// The middle half of a part of some length along x in the middle of a sheet.
-    pub fn middle_half(mesh: &Mesh, length: f64, words: &'static str) -> Self {
+    pub fn middle_half(mesh: &Mesh, length: f64, description: &'static str) -> Self {
         let [x, y] = mesh.middle();
         let quarter = 0.25 * length;
         Self {
             ends: [[x - quarter, y], [x + quarter, y]],
-            words,
+            description,
         }
     }
 
@@ -102,10 +102,12 @@ const FORCES: [Column; 2] = [
 const MOMENT: Column = ("moment [N·mm]", |state| state.carried()[2]);
 
 impl Headline<'_> {
-    /// The tables of a report's begin.
+    /// The tables at the beginning of a report.
     pub fn blocks(&self) -> Vec<Block> {
-        let is_any = !self.listed().is_empty();
-        let mut blocks: Vec<Block> = is_any.then(|| self.forces()).into_iter().collect();
+        let mut blocks = Vec::new();
+        if !self.listed().is_empty() {
+            blocks.push(self.forces());
+        }
         blocks.extend(self.state.largest());
         blocks.push(Block::Paragraph(self.note()));
         blocks
@@ -122,7 +124,7 @@ impl Headline<'_> {
             note += " Forces are those of supports; a dash is a group on which none acts.";
         }
         if let Some(gauge) = &self.state.gauge {
-            note += &format!(" Gauge section: {}.", gauge.words);
+            note += &format!(" Gauge section: {}.", gauge.description);
         }
         note
     }
@@ -140,17 +142,17 @@ impl Headline<'_> {
         self.steps.iter().flat_map(|(_, groups)| groups)
     }
 
-    /// Whether a quantity of some states is worth a glance, next to its largest size.
-    fn is_any<'b>(
+    /// Whether a quantity of some states is not negligible beside its largest size.
+    fn is_significant<'b>(
         column: Column,
         mut states: impl Iterator<Item = &'b GroupState>,
         size: f64,
     ) -> bool {
-        states.any(|state| column.1(state).abs() > NOTHING * size)
+        states.any(|state| column.1(state).abs() > NEGLIGIBLE * size)
     }
 
-    /// The largest displacement in mm, force in N and, of that force over the sheet's larger side, moment in N·mm; at least so much that rounding
-    /// of positions, and of the forces on a group's nodes, is nothing beside them.
+    /// The largest displacement in mm, the largest force in N, and the moment of that force over the sheet's larger side in N·mm; at least so
+    /// large that rounding of positions, and of the forces on a group's nodes, is negligible beside them.
     fn sizes(&self) -> [f64; 3] {
         let [low, high] = self.state.deformed.mesh.bounding_box();
         let side = (high[0] - low[0]).max(high[1] - low[1]);
@@ -160,12 +162,12 @@ impl Headline<'_> {
         };
         let carrying = self.states().filter(|state| state.carried() != [0.0; 3]);
         let of_nodes = carrying.map(|state| state.size).fold(0.0, f64::max);
-        let force = largest(FORCES, ROUNDING / NOTHING * of_nodes);
-        let displacement = largest(DISPLACEMENTS, ROUNDING / NOTHING * side);
+        let force = largest(FORCES, ROUNDING / NEGLIGIBLE * of_nodes);
+        let displacement = largest(DISPLACEMENTS, ROUNDING / NEGLIGIBLE * side);
         [displacement, force, force * side]
     }
 
-    /// The quantities that are worth a glance in a group, with their largest sizes; a force in any case.
+    /// The quantities that are significant in some group, with their largest sizes; at least a force.
     fn columns(&self) -> Vec<(Column, f64)> {
         let [displacement, force, moment] = self.sizes();
         let displacements = DISPLACEMENTS.map(|column| (column, displacement));
@@ -175,7 +177,7 @@ impl Headline<'_> {
             .chain(forces)
             .chain([(MOMENT, moment)]);
         let mut columns: Vec<_> = all
-            .filter(|(column, size)| Self::is_any(*column, self.states(), *size))
+            .filter(|(column, size)| Self::is_significant(*column, self.states(), *size))
             .collect();
         if force == 0.0 {
             columns.push(forces[0]);
@@ -183,25 +185,27 @@ impl Headline<'_> {
         columns
     }
 
-    /// The groups that move or carry something. Of two that balance each other without moments, the one that rests says nothing more.
+    /// The groups that move or carry something. Of two that balance each other without moments, the one at rest is left out: its force is that
+    /// of the other with the opposite sign.
     fn listed(&self) -> Vec<usize> {
         let [displacement, force, moment] = self.sizes();
         let of = |group: usize| self.steps.iter().map(move |(_, groups)| &groups[group]);
         let pushes = |group: &usize| {
             FORCES
                 .iter()
-                .any(|column| Self::is_any(*column, of(*group), force))
+                .any(|column| Self::is_significant(*column, of(*group), force))
         };
-        let carries = |group: &usize| pushes(group) || Self::is_any(MOMENT, of(*group), moment);
+        let carries =
+            |group: &usize| pushes(group) || Self::is_significant(MOMENT, of(*group), moment);
         let moves = |group: &usize| {
             DISPLACEMENTS
                 .iter()
-                .any(|column| Self::is_any(*column, of(*group), displacement))
+                .any(|column| Self::is_significant(*column, of(*group), displacement))
         };
-        let turned = Self::is_any(MOMENT, self.states(), moment);
+        let has_moments = Self::is_significant(MOMENT, self.states(), moment);
         let all = 0..self.groups.len();
         let carrying: Vec<usize> = all.clone().filter(carries).collect();
-        let is_pair = !turned && carrying.len() == 2 && carrying.iter().any(moves);
+        let is_pair = !has_moments && carrying.len() == 2 && carrying.iter().any(moves);
         all.filter(|group| moves(group) || carries(group) && !is_pair)
             .collect()
     }
@@ -224,7 +228,7 @@ impl Headline<'_> {
             table = table.column(head, |(step, group)| {
                 match value(&self.steps[*step].1[*group]) {
                     _ if !is_displacement && !self.is_held(*group) => "–".to_owned(),
-                    small if small.abs() <= NOTHING * size => number(0.0),
+                    small if small.abs() <= NEGLIGIBLE * size => number(0.0),
                     value => number(value),
                 }
             });
@@ -286,14 +290,14 @@ impl LoadedSheet<'_> {
         self.side() / 5.0
     }
 
-    /// The decimal places of a position, by which a fiftieth of the smaller side is seen.
-    fn places(&self) -> usize {
+    /// The decimals of a position that resolve a fiftieth of the smaller side.
+    fn decimals(&self) -> usize {
         (1.6 - self.side().log10()).ceil().clamp(1.0, 9.0) as usize
     }
 
-    /// Where largest values are not looked for.
+    /// A note on the regions that are left out when the largest values are searched; `None` where nothing is left out.
     pub fn note(&self) -> Option<String> {
-        let distance = format!("{:.1$}", self.distance(), self.places() + 3);
+        let distance = format!("{:.1$}", self.distance(), self.decimals() + 3);
         let distance = distance.trim_end_matches('0').trim_end_matches('.');
         (!self.singular.is_empty()).then(|| {
             format!(
@@ -304,19 +308,9 @@ impl LoadedSheet<'_> {
 
     /// A table of the largest values and of those of the gauge section; `None` where no node is far enough from singular points.
     pub fn largest(&self) -> Option<Block> {
-        let Deformed {
-            mesh,
-            fields,
-            viscous,
-            ..
-        } = &self.deformed;
-        let NodalSheet {
-            mesh,
-            displacement,
-            states,
-        } = NodalSheet::new(self.laws, mesh, fields, viscous);
-        let mesh = &*mesh;
-        let (distance, places) = (self.distance(), self.places());
+        let sheet = NodalSheet::new(self.laws, &self.deformed);
+        let (mesh, states) = (&*sheet.mesh, &sheet.states);
+        let (distance, decimals) = (self.distance(), self.decimals());
         let is_regular = |node: &usize| {
             let [x, y] = mesh.nodes[*node];
             self.singular
@@ -333,7 +327,7 @@ impl LoadedSheet<'_> {
             let value = |node: usize| value(&states[node]);
             let sign = if is_least { -1.0 } else { 1.0 };
             let node = largest_node(mesh, &regular, &|node| sign * value(node))?;
-            let position = mesh.nodes[node].map(|along| position(along, places));
+            let position = mesh.nodes[node].map(|along| position(along, decimals));
             let position = position.join(", ");
             let mut row = vec![
                 name.to_owned(),
@@ -342,7 +336,7 @@ impl LoadedSheet<'_> {
             ];
             row.extend(self.gauge.map(|gauge| {
                 let mean = if STRETCHES.contains(&name) {
-                    gauge.stretch(mesh, &displacement)
+                    gauge.stretch(mesh, &sheet.displacement)
                 } else {
                     gauge.mean(mesh, &value)
                 };
@@ -361,11 +355,11 @@ impl LoadedSheet<'_> {
     }
 }
 
-/// A coordinate with some decimal places; nothing less than zero that is rounded to it.
-fn position(along: f64, places: usize) -> String {
-    let rounding = 0.5 * 10_f64.powi(-(places as i32));
+/// A coordinate with some decimals; without the sign of a negative one that is rounded to zero.
+fn position(along: f64, decimals: usize) -> String {
+    let rounding = 0.5 * 10_f64.powi(-(decimals as i32));
     let along = if along.abs() < rounding { 0.0 } else { along };
-    format!("{along:.places$}")
+    format!("{along:.decimals$}")
 }
 
 /// The node with the largest value; of nodes that differ by rounding alone, as those of a symmetric sheet, the first along x, then y.

@@ -4,6 +4,7 @@ use serde_json::{Value, json};
 
 use super::{Drawing, Line, LineChart, PALETTE, Stroke};
 use crate::identification::{Argument, Function, Identification, Recording};
+use crate::statistics::farthest;
 
 const INK: [u8; 3] = [60, 60, 60];
 const GREY: [u8; 3] = [190, 190, 190];
@@ -44,9 +45,7 @@ pub fn identification_picture(identification: &Identification, recording: &Recor
 /// The share of the force in N divided by its argument, at every instant where the argument is large; near zero a secant is only noise.
 fn secants(divisor: &[f64], argument: &[f64], force: &dyn Fn(usize) -> f64) -> Vec<[f64; 2]> {
     const LEAST: f64 = 0.25;
-    let most = divisor
-        .iter()
-        .fold(0.0, |most: f64, value| most.max(value.abs()));
+    let most = farthest(divisor.iter().copied()).abs();
     let instants = (0..divisor.len()).filter(|i| divisor[*i].abs() > LEAST * most);
     instants
         .map(|i| [argument[i], force(i) / divisor[i]])

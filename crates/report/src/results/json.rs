@@ -21,11 +21,7 @@ impl Results {
             all.insert("at".into(), json!(step.at));
             Value::Object(all)
         };
-        let parts = outcome
-            .times
-            .iter()
-            .map(|(what, seconds)| (&**what, *seconds));
-        let times = [("whole study", self.seconds)].into_iter().chain(parts);
+        let times = self.times();
         let times: Map<_, _> = times.map(|(what, s)| (what.to_owned(), json!(s))).collect();
         json!({
             "gelbench": env!("CARGO_PKG_VERSION"),

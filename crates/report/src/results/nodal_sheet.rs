@@ -1,10 +1,34 @@
-//! A sheet with the states at its nodes, on either side where materials meet.
+//! A deformed sheet, and the states at its nodes, on either side where materials meet.
 
 use std::borrow::Cow;
 
 use super::state::{LocalState, nodal_states, states_within_parts};
 use crate::mesh::Mesh;
 use crate::problem::SheetLaws;
+
+/// A model with the data that determine its stresses.
+pub struct Deformed<'a> {
+    /// Its name.
+    pub label: String,
+    /// Its mesh.
+    pub mesh: &'a Mesh,
+    /// Its displacement fields: the present one last, preceded by those that a law with a memory remembers.
+    pub fields: Vec<&'a [f64]>,
+    /// The viscous part of the first Piola–Kirchhoff stress at the nodes in MPa; empty where there is none.
+    pub viscous: &'a [[f64; 4]],
+}
+
+impl<'a> Deformed<'a> {
+    /// The model of an elastic material.
+    pub fn elastic(label: impl Into<String>, mesh: &'a Mesh, fields: Vec<&'a [f64]>) -> Self {
+        Self {
+            label: label.into(),
+            mesh,
+            fields,
+            viscous: &[],
+        }
+    }
+}
 
 /// A sheet on a mesh with the states at its nodes; between cells of different laws, where stresses jump, the mesh is cut.
 pub struct NodalSheet<'a> {
@@ -17,17 +41,13 @@ pub struct NodalSheet<'a> {
 }
 
 impl<'a> NodalSheet<'a> {
-    /// The sheet of some displacement fields and viscous stresses as [`LocalState::of`] takes them.
-    pub fn new(
-        laws: SheetLaws,
-        mesh: &'a Mesh,
-        fields: &[&'a [f64]],
-        viscous: &[[f64; 4]],
-    ) -> Self {
+    /// The states of a deformed model.
+    pub fn new(laws: SheetLaws, model: &Deformed<'a>) -> Self {
+        let (mesh, fields) = (model.mesh, &model.fields);
         let laws = laws.in_cells(mesh);
         let Some(cut) = laws.cut(mesh) else {
             return Self {
-                states: nodal_states(&laws, mesh, fields, viscous),
+                states: nodal_states(&laws, mesh, fields, model.viscous),
                 mesh: Cow::Borrowed(mesh),
                 displacement: Cow::Borrowed(fields.last().copied().unwrap_or_default()),
             };

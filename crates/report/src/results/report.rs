@@ -29,7 +29,7 @@ impl Results {
             "gelbench {}",
             env!("CARGO_PKG_VERSION")
         )));
-        blocks.extend(self.times());
+        blocks.extend(self.time_blocks());
         blocks
     }
 
@@ -52,16 +52,11 @@ impl Results {
         blocks
     }
 
-    fn times(&self) -> [Block; 3] {
-        let parts = self
-            .outcome
-            .times
-            .iter()
-            .map(|(what, seconds)| (&**what, *seconds));
-        let all = [("whole study", self.seconds)].into_iter().chain(parts);
+    fn time_blocks(&self) -> [Block; 3] {
         let digits = |seconds: f64| if seconds < 0.1 { 5 } else { 3 };
         let time = |seconds: f64| format!("{seconds:.*}", digits(seconds));
-        let rows = all.map(|(what, seconds)| vec![what.to_owned(), time(seconds)]);
+        let rows = self.times();
+        let rows = rows.map(|(what, seconds)| vec![what.to_owned(), time(seconds)]);
         [
             Block::heading("Times"),
             Block::paragraph("Wall-clock times. They differ from run to run."),

@@ -10,7 +10,7 @@ use crate::problem::SheetLaws;
 /// The cells that contain a point, with its natural coordinates in each; none of a point that is not on the sheet.
 pub type Position = Vec<(usize, [f64; 2])>;
 
-/// Where points at rest are in a mesh; a point may lie so far outside of its nearest cell, in sizes of the cell.
+/// The positions of points at rest in a mesh. A point may lie outside of its nearest cell by `margin`, in sizes of the cell.
 pub fn positions(mesh: &Mesh, points: &[[f64; 2]], margin: f64) -> Vec<Position> {
     let points = points.iter();
     points.map(|point| mesh.cells_at(*point, margin)).collect()
@@ -29,7 +29,7 @@ impl Deformed<'_> {
         if positions.is_empty() {
             return Vec::new();
         }
-        let sheet = NodalSheet::new(laws, self.mesh, &self.fields, self.viscous);
+        let sheet = NodalSheet::new(laws, self);
         let displacement: Vec<[f64; 2]> = sheet.displacement.vectors().collect();
         let in_cell = |(cell, local): (usize, [f64; 2])| {
             let weights = sheet.mesh.shape(cell).values(local);

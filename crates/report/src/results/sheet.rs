@@ -1,4 +1,4 @@
-//! What the stresses of a sheet follow from.
+//! The data that determine the stresses of a sheet.
 
 use super::viscous_stress::ViscousStress;
 use crate::problem::SheetLaws;

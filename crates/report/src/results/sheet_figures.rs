@@ -1,9 +1,9 @@
 //! Pictures of stress and strain, of several models side by side.
 
-use super::nodal_sheet::NodalSheet;
+use super::nodal_sheet::{Deformed, NodalSheet};
 use super::{FieldFigure, Figure, LocalState, Panel};
 use crate::document::name_of;
-use crate::mesh::{Mesh, NodalField};
+use crate::mesh::NodalField;
 use crate::problem::SheetLaws;
 use crate::units::Dimension;
 
@@ -48,64 +48,61 @@ pub enum SheetField {
     Energy,
 }
 
-/// A title, a quantity with its unit, and the value of a state and a displacement in mm.
-type About = (&'static str, &'static str, fn(&LocalState, [f64; 2]) -> f64);
+/// A field, its name in studies and files, its title in a picture, its name on an axis with the unit, and its value at a state and a
+/// displacement in mm.
+type Description = (
+    SheetField,
+    &'static str,
+    &'static str,
+    &'static str,
+    fn(&LocalState, [f64; 2]) -> f64,
+);
 
 impl SheetField {
-    /// All of them by the names that studies and files use.
-    pub const NAMES: [(&'static str, Self); 18] = [
-        ("displacement", Self::Displacement),
-        ("displacement-x", Self::DisplacementX),
-        ("displacement-y", Self::DisplacementY),
-        ("von-mises", Self::VonMises),
-        ("largest-principal-stress", Self::LargestPrincipalStress),
-        ("smallest-principal-stress", Self::SmallestPrincipalStress),
-        ("cauchy-xx", Self::CauchyXx),
-        ("cauchy-yy", Self::CauchyYy),
-        ("cauchy-xy", Self::CauchyXy),
-        ("cauchy-zz", Self::CauchyZz),
-        ("largest-principal-strain", Self::LargestPrincipalStrain),
-        ("green-lagrange-xx", Self::GreenLagrangeXx),
-        ("green-lagrange-yy", Self::GreenLagrangeYy),
-        ("green-lagrange-xy", Self::GreenLagrangeXy),
-        ("stretch-1", Self::LargerStretch),
-        ("stretch-2", Self::SmallerStretch),
-        ("thickness-stretch", Self::ThicknessStretch),
-        ("energy", Self::Energy),
+    /// All fields in the order of their declaration.
+    #[rustfmt::skip]
+    const ALL: [Description; 18] = [
+        (Self::Displacement, "displacement", "Displacement", "displacement [mm]", |_, [ux, uy]| ux.hypot(uy)),
+        (Self::DisplacementX, "displacement-x", "Displacement along x", "ux [mm]", |_, [ux, _]| ux),
+        (Self::DisplacementY, "displacement-y", "Displacement along y", "uy [mm]", |_, [_, uy]| uy),
+        (Self::VonMises, "von-mises", "Von Mises stress", "von Mises stress [MPa]", |state, _| state.von_mises()),
+        (Self::LargestPrincipalStress, "largest-principal-stress", "Largest principal Cauchy stress", "in the plane [MPa]", |state, _| state.principal_cauchy()[0]),
+        (Self::SmallestPrincipalStress, "smallest-principal-stress", "Smallest principal Cauchy stress", "in the plane [MPa]", |state, _| state.principal_cauchy()[1]),
+        (Self::CauchyXx, "cauchy-xx", "Cauchy stress along x", "σxx [MPa]", |state, _| state.cauchy[0]),
+        (Self::CauchyYy, "cauchy-yy", "Cauchy stress along y", "σyy [MPa]", |state, _| state.cauchy[1]),
+        (Self::CauchyXy, "cauchy-xy", "Cauchy shear stress", "σxy [MPa]", |state, _| state.cauchy[3]),
+        (Self::CauchyZz, "cauchy-zz", "Cauchy stress across the sheet", "σzz [MPa]", |state, _| state.cauchy[2]),
+        (Self::LargestPrincipalStrain, "largest-principal-strain", "Largest principal Green–Lagrange strain", "in the plane [–]", |state, _| state.largest_principal_strain()),
+        (Self::GreenLagrangeXx, "green-lagrange-xx", "Green–Lagrange strain along x", "Exx [–]", |state, _| state.green_lagrange[0]),
+        (Self::GreenLagrangeYy, "green-lagrange-yy", "Green–Lagrange strain along y", "Eyy [–]", |state, _| state.green_lagrange[1]),
+        (Self::GreenLagrangeXy, "green-lagrange-xy", "Green–Lagrange shear strain", "Exy [–]", |state, _| state.green_lagrange[3]),
+        (Self::LargerStretch, "stretch-1", "Larger principal stretch", "λ₁ [–]", |state, _| state.stretches[0]),
+        (Self::SmallerStretch, "stretch-2", "Smaller principal stretch", "λ₂ [–]", |state, _| state.stretches[1]),
+        (Self::ThicknessStretch, "thickness-stretch", "Thickness stretch", "λ₃ [–]", |state, _| state.stretches[2]),
+        (Self::Energy, "energy", "Stored energy per volume at rest", "energy [mJ/mm³]", |state, _| state.energy),
     ];
 
-    #[rustfmt::skip]
-    fn about(self) -> About {
-        match self {
-            Self::Displacement => ("Displacement", "displacement [mm]", |_, [ux, uy]| ux.hypot(uy)),
-            Self::DisplacementX => ("Displacement along x", "ux [mm]", |_, [ux, _]| ux),
-            Self::DisplacementY => ("Displacement along y", "uy [mm]", |_, [_, uy]| uy),
-            Self::VonMises => ("Von Mises stress", "von Mises stress [MPa]", |state, _| state.von_mises()),
-            Self::LargestPrincipalStress => ("Largest principal Cauchy stress", "in the plane [MPa]", |state, _| state.principal_cauchy()[0]),
-            Self::SmallestPrincipalStress => ("Smallest principal Cauchy stress", "in the plane [MPa]", |state, _| state.principal_cauchy()[1]),
-            Self::CauchyXx => ("Cauchy stress along x", "σxx [MPa]", |state, _| state.cauchy[0]),
-            Self::CauchyYy => ("Cauchy stress along y", "σyy [MPa]", |state, _| state.cauchy[1]),
-            Self::CauchyXy => ("Cauchy shear stress", "σxy [MPa]", |state, _| state.cauchy[3]),
-            Self::CauchyZz => ("Cauchy stress across the sheet", "σzz [MPa]", |state, _| state.cauchy[2]),
-            Self::LargestPrincipalStrain => ("Largest principal Green–Lagrange strain", "in the plane [–]", |state, _| state.largest_principal_strain()),
-            Self::GreenLagrangeXx => ("Green–Lagrange strain along x", "Exx [–]", |state, _| state.green_lagrange[0]),
-            Self::GreenLagrangeYy => ("Green–Lagrange strain along y", "Eyy [–]", |state, _| state.green_lagrange[1]),
-            Self::GreenLagrangeXy => ("Green–Lagrange shear strain", "Exy [–]", |state, _| state.green_lagrange[3]),
-            Self::LargerStretch => ("Larger principal stretch", "λ₁ [–]", |state, _| state.stretches[0]),
-            Self::SmallerStretch => ("Smaller principal stretch", "λ₂ [–]", |state, _| state.stretches[1]),
-            Self::ThicknessStretch => ("Thickness stretch", "λ₃ [–]", |state, _| state.stretches[2]),
-            Self::Energy => ("Stored energy per volume at rest", "energy [mJ/mm³]", |state, _| state.energy),
+    /// All fields by the names that studies and files use.
+    pub const NAMES: [(&'static str, Self); 18] = {
+        let mut names = [("", Self::Displacement); 18];
+        let mut index = 0;
+        while index < names.len() {
+            let (field, name, ..) = Self::ALL[index];
+            assert!(field as usize == index, "the order of the declaration");
+            names[index] = (name, field);
+            index += 1;
         }
-    }
+        names
+    };
 
     /// Its title in a picture.
     pub fn title(self) -> &'static str {
-        self.about().0
+        Self::ALL[self as usize].2
     }
 
-    /// What it is on an axis, with its unit.
+    /// Its name on an axis, with its unit.
     pub fn quantity(self) -> &'static str {
-        self.about().1
+        Self::ALL[self as usize].3
     }
 
     /// The dimension of its values.
@@ -119,35 +116,12 @@ impl SheetField {
 
     /// Its value where the sheet has a state and a displacement in mm.
     pub fn value(self, state: &LocalState, displacement: [f64; 2]) -> f64 {
-        self.about().2(state, displacement)
+        let (.., value) = Self::ALL[self as usize];
+        value(state, displacement)
     }
 }
 
-/// A model with the data that determine its stresses.
-pub struct Deformed<'a> {
-    /// Its name.
-    pub label: String,
-    /// Its mesh.
-    pub mesh: &'a Mesh,
-    /// Its displacement fields: the present one last, preceded by those that a law with a memory remembers.
-    pub fields: Vec<&'a [f64]>,
-    /// The viscous part of the first Piola–Kirchhoff stress at the nodes in MPa; empty where there is none.
-    pub viscous: &'a [[f64; 4]],
-}
-
-impl<'a> Deformed<'a> {
-    /// The model of an elastic material.
-    pub fn elastic(label: impl Into<String>, mesh: &'a Mesh, fields: Vec<&'a [f64]>) -> Self {
-        Self {
-            label: label.into(),
-            mesh,
-            fields,
-            viscous: &[],
-        }
-    }
-}
-
-/// What pictures show of a sheet.
+/// The fields that pictures show of a sheet.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ShownFields {
     /// One picture for each.
@@ -184,12 +158,11 @@ pub fn sheet_figures(
 ) -> Vec<Figure> {
     let sheets: Vec<NodalSheet> = models
         .iter()
-        .map(|model| NodalSheet::new(laws, model.mesh, &model.fields, model.viscous))
+        .map(|model| NodalSheet::new(laws, model))
         .collect();
     let figure = |field: &SheetField| {
         let panel = |(model, sheet): (&Deformed, &NodalSheet)| {
-            let u = sheet.displacement.vectors();
-            let u: Vec<[f64; 2]> = u.collect();
+            let u: Vec<[f64; 2]> = sheet.displacement.vectors().collect();
             let value = |node: usize| field.value(&sheet.states[node], u[node]);
             Panel::at_nodes(&model.label, &sheet.mesh, &sheet.displacement, &value)
         };

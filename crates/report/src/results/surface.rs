@@ -20,7 +20,7 @@ pub struct Surface {
     pub rest: Vec<Vec<[f64; 2]>>,
 }
 
-/// So many cells are divided; those of a finer mesh are small enough to be shown by their corners alone.
+/// Cells up to which each is divided; those of a finer mesh are small enough to be shown by their corners alone.
 const MOST_DIVIDED: usize = 12_000;
 
 impl Surface {
@@ -81,18 +81,18 @@ impl Surface {
         }
     }
 
-    /// The same of a field that is shown: within a cell it is nowhere beyond what its nodes have, as parabolas through stresses would be, so that
-    /// what is said of its ends is in the arrays too.
+    /// The values at the points of a field that is drawn. Within a cell they are limited to the range of the values at its nodes, which parabolas
+    /// through stresses would exceed, so that the ends of the colour bar are in the arrays too.
     pub fn field(mesh: &Mesh, at_node: &dyn Fn(usize) -> f64) -> Vec<f64> {
         Self::sampled(mesh, at_node, |nodal| extremes(nodal.iter().copied()))
     }
 
-    /// The values of a field at the points from those at the nodes of the mesh that the surface was made of.
+    /// The values at the points of a field, interpolated from those at the nodes of the mesh that the surface was made of.
     pub fn values(mesh: &Mesh, at_node: &dyn Fn(usize) -> f64) -> Vec<f64> {
         Self::sampled(mesh, at_node, |_| [f64::NEG_INFINITY, f64::INFINITY])
     }
 
-    /// The values at the points within the limits that the values at the nodes of a cell set; what has no number there has none.
+    /// The values at the points, each within the limits for the nodal values of its cell; NaN stays NaN.
     fn sampled(
         mesh: &Mesh,
         at_node: &dyn Fn(usize) -> f64,
@@ -107,11 +107,10 @@ impl Surface {
             let [low, high] = limits(&nodal);
             for values in &division.part(mesh.shape(cell)).values {
                 let value: f64 = values.iter().zip(&nodal).map(|(n, value)| n * value).sum();
-                let is_number = !value.is_nan();
-                sampled.push(if is_number {
-                    value.max(low).min(high)
-                } else {
+                sampled.push(if value.is_nan() {
                     value
+                } else {
+                    value.max(low).min(high)
                 });
             }
         }

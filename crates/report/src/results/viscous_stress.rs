@@ -18,8 +18,8 @@ pub struct ViscousStress {
 }
 
 impl ViscousStress {
-    /// At each of some times in s, from the displacements in mm and the velocities in mm/s then, of a sheet that had rested for long at
-    /// the first. Between two of them the stress of long times changes evenly.
+    /// The stress at each of some times in s, from the displacements in mm and the velocities in mm/s at these times, of a sheet that was fully
+    /// relaxed at the first one. Between two times the long-term stress is taken as linear in time.
     pub fn over_time(
         law: &dyn HyperelasticLaw,
         material: &ViscousMaterial,
@@ -59,8 +59,8 @@ impl ViscousStress {
     }
 }
 
-/// The viscous stress at a place, of what it remembers of S∞ and Qᵢ some time in s ago; of nothing where it has rested for long. No numbers
-/// where the sheet is turned inside out.
+/// The viscous stress at a point. `memory` holds S∞ and Qᵢ at the time before, `elapsed` s ago, and receives those of now; it is empty for a
+/// material that is fully relaxed. NaN where the sheet is turned inside out.
 fn stress(
     law: &dyn HyperelasticLaw,
     material: &ViscousMaterial,

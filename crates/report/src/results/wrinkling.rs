@@ -46,7 +46,7 @@ impl Wrinkling {
         Self::of_cells(sheet, mesh, displacement, &states)
     }
 
-    /// The compression of the states in the cells; a cell that is folded at its centre has no stress and no say.
+    /// The compression of the states in the cells; a cell that is folded at its centre has no stress and counts nowhere.
     pub fn of_cells(
         sheet: Sheet,
         mesh: &Mesh,

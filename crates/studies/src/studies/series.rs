@@ -186,12 +186,12 @@ fn gauge(outline: &Outline, mesh: &Mesh) -> Option<Gauge> {
     };
     match shape {
         Shape::Strip { size } => {
-            let words = "the middle half of the length";
-            Some(Gauge::middle_half(mesh, size[0], words))
+            let description = "the middle half of the length";
+            Some(Gauge::middle_half(mesh, size[0], description))
         }
         Shape::DogBone { narrow, .. } => {
-            let words = "the middle half of the narrow part";
-            Some(Gauge::middle_half(mesh, narrow[0], words))
+            let description = "the middle half of the narrow part";
+            Some(Gauge::middle_half(mesh, narrow[0], description))
         }
         _ => None,
     }

@@ -2,8 +2,7 @@
 
 use super::{Course, STRETCH, deformation};
 use crate::calibration::TestData;
-use crate::results::stress_chart::stress_chart;
-use crate::results::{LineChart, Scale};
+use crate::results::chart::{LineChart, Scale, stress_chart};
 
 /// Tests alone, as they were read, before any law is fitted to them.
 pub fn tests_chart(tests: &[TestData]) -> LineChart {
