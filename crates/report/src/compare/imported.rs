@@ -78,15 +78,15 @@ impl ModelFields {
     }
 }
 
-/// The places at which fields are compared, and the imported field there.
+/// The points at which fields are compared, and the imported field there.
 #[derive(Clone, Debug)]
 pub struct Sites {
-    /// Places in mm.
+    /// Points in mm.
     pub positions: Vec<[f64; 2]>,
     weights: Vec<f64>,
-    /// ux, uy of place after place in mm.
+    /// ux, uy of point after point in mm.
     pub expected: Vec<f64>,
-    /// The mesh whose nodes they are; `None` for points.
+    /// The mesh whose nodes the points are; `None` for scattered points.
     lattice: Option<Mesh>,
 }
 
@@ -97,13 +97,13 @@ pub struct Difference {
     pub percent: f64,
     /// The largest difference in mm.
     pub largest: f64,
-    /// The place of the largest difference, in mm.
+    /// The point of the largest difference, in mm.
     pub position: [f64; 2],
     /// The factor by which the imported displacements come nearest to the model's: Σ A u·v / Σ A v².
     pub factor: f64,
     /// The remaining difference in relative L2 in % after multiplication by this factor.
     pub scaled_percent: f64,
-    /// The motion of the whole body by which the imported field comes nearest to the model's, about the middle of all places.
+    /// The motion of the whole body by which the imported field comes nearest to the model's, about the middle of all points.
     pub shift: RigidMotion,
     /// The remaining difference in relative L2 in % after this motion.
     pub shifted_percent: f64,
@@ -161,12 +161,12 @@ pub enum Mismatch {
         /// The nearest factor between two units.
         ratio: f64,
     },
-    /// A place that only one of the two has.
+    /// A point that only one of the two has.
     #[error("{what} at ({}, {}) mm", decimals(.position[0], 4), decimals(.position[1], 4))]
     Outside {
         /// The part that does not cover the other.
         what: &'static str,
-        /// The place in mm.
+        /// The point in mm.
         position: [f64; 2],
     },
     /// A field that is zero, so that no deviation can be related to it.
@@ -204,7 +204,7 @@ impl ExternalField {
         }
     }
 
-    /// The places at which the models are compared with it: the nodes of a lattice, or the points.
+    /// The points at which the models are compared with it: the nodes of a lattice, or its own points.
     ///
     /// # Errors
     /// `Mismatch` where the field does not belong to the specimen.
@@ -247,7 +247,7 @@ impl ExternalField {
 }
 
 impl Sites {
-    /// A model's field at the sites, ux, uy of place after place.
+    /// A model's field at the sites, ux, uy of point after point.
     pub fn at(&self, field: &ModelField) -> Vec<f64> {
         if let Some(lattice) = &self.lattice {
             return field.mesh.displacement_on(&field.displacement, lattice);
@@ -258,11 +258,11 @@ impl Sites {
             .collect()
     }
 
-    /// What is to be said of sites that cover a window of the specimen alone.
+    /// A remark on sites that cover only a window of the specimen; `None` where they cover all of it.
     pub fn window(&self, specimen: &Mesh) -> Option<String> {
-        const WHOLE: f64 = 0.9;
+        const NEARLY_ALL: f64 = 0.9;
         let [extent, full] = [&self.positions, &specimen.nodes].map(|positions| sides(positions));
-        let is_window = (0..2).any(|axis| extent[axis] < WHOLE * full[axis]);
+        let is_window = (0..2).any(|axis| extent[axis] < NEARLY_ALL * full[axis]);
         is_window.then(|| {
             format!(
                 "the points span {} of the specimen's {}, and the models are compared there alone",
@@ -283,10 +283,6 @@ impl Sites {
             return Err(Mismatch::Zero);
         }
         let (largest, position) = computed.largest_distance(&self.expected);
-        let scaled = |factor: f64| -> Vec<f64> {
-            let scaled = self.expected.iter();
-            scaled.map(|expected| factor * expected).collect()
-        };
         let product = |a: &[f64], b: &[f64]| -> f64 {
             let terms = a.iter().zip(b).zip(0..);
             terms
@@ -294,12 +290,14 @@ impl Sites {
                 .sum()
         };
         let factor = product(&computed, &self.expected) / product(&self.expected, &self.expected);
+        let scaled = self.expected.iter().map(|expected| factor * expected);
+        let scaled: Vec<f64> = scaled.collect();
         let (shift, shifted) = self.shifted_to(&computed);
         Ok(Difference {
             factor,
             shift,
             shifted_percent: 100.0 * computed.weighted_distance(&shifted, &self.weights) / size,
-            scaled_percent: 100.0 * computed.weighted_distance(&scaled(factor), &self.weights)
+            scaled_percent: 100.0 * computed.weighted_distance(&scaled, &self.weights)
                 / (factor.abs() * size),
             percent: 100.0 * computed.weighted_distance(&self.expected, &self.weights) / size,
             largest,
@@ -313,10 +311,11 @@ impl Sites {
         let now = |u: &[f64], site: usize| {
             [0, 1].map(|axis| self.positions[site][axis] + u[2 * site + axis])
         };
-        let pairs = self.weights.iter().enumerate();
-        let pairs =
-            pairs.map(|(site, weight)| (*weight, now(&self.expected, site), now(computed, site)));
-        let (middle, motion) = RigidMotion::nearest(&pairs.collect::<Vec<_>>());
+        let pair = |(site, weight): (usize, &f64)| {
+            (*weight, now(&self.expected, site), now(computed, site))
+        };
+        let pairs: Vec<_> = self.weights.iter().enumerate().map(pair).collect();
+        let (middle, motion) = RigidMotion::nearest(&pairs);
         let moved = (0..self.positions.len()).flat_map(|site| {
             let position = now(&self.expected, site);
             let more = motion.at([0, 1].map(|axis| position[axis] - middle[axis]));
@@ -326,7 +325,7 @@ impl Sites {
     }
 }
 
-/// The sides of the box around some places.
+/// The sides of the box around some points.
 fn sides(positions: &[[f64; 2]]) -> [f64; 2] {
     let [low, high] = bounding_box(positions.iter().copied());
     [0, 1].map(|axis| high[axis] - low[axis])
@@ -359,7 +358,7 @@ fn near_in_size(positions: &[[f64; 2]], specimen: &Mesh) -> Result<(), Mismatch>
     }
 }
 
-/// Checks that all places lie in a mesh.
+/// Checks that all points lie in a mesh.
 fn covers(mesh: &Mesh, positions: &[[f64; 2]], what: &'static str) -> Result<(), Mismatch> {
     match positions
         .iter()

@@ -1,4 +1,4 @@
-//! Whether a deviation is within its limit, and whether the reference is good enough to say so.
+//! Whether a deviation is within its limit, and whether the reference is good enough to judge it.
 //!
 //! A reference has an error of its own. Let d be the measured deviation from it, e the reference's own error of the same
 //! quantity, and l the limit, all in percent of the same size:
@@ -26,7 +26,7 @@ use crate::document::stored::{StaticText, static_text};
 pub const ROUNDING_PERCENT: f64 = 1e-6;
 
 /// The largest part of a deviation that may be the reference's own error.
-pub const OWN_SHARE: f64 = 0.1;
+pub const LARGEST_SHARE: f64 = 0.1;
 
 /// The judgement of a requirement.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -85,14 +85,14 @@ pub fn judge(deviation: f64, own_error: f64, limit: f64, remedy: &str) -> Judgem
     if deviation <= ROUNDING_PERCENT && own_error <= ROUNDING_PERCENT {
         return Judgement::Exact("exact but for rounding");
     }
-    if own_error <= OWN_SHARE * deviation {
+    if own_error <= LARGEST_SHARE * deviation {
         return if deviation <= limit {
             Judgement::Pass
         } else {
             Judgement::Fail
         };
     }
-    if deviation + own_error / OWN_SHARE <= limit {
+    if deviation + own_error / LARGEST_SHARE <= limit {
         return Judgement::PassByMargin;
     }
     let reason = format!(

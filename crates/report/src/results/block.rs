@@ -41,7 +41,7 @@ impl Block {
         Self::Table(head, rows.into_iter().collect())
     }
 
-    /// Words and tables for a terminal; nothing of a picture.
+    /// The block as text for a terminal; empty for a picture.
     pub fn plain(&self) -> String {
         match self {
             Self::Paragraph(text) => broken(text, LINE).join("\n") + "\n",
@@ -52,7 +52,7 @@ impl Block {
     }
 }
 
-/// A table that is made column by column, each head beside what stands below it.
+/// A table that is built column by column, each head together with the cells below it.
 pub struct Table<T> {
     rows: Vec<T>,
     head: Vec<String>,
@@ -60,7 +60,7 @@ pub struct Table<T> {
 }
 
 impl<T> Table<T> {
-    /// A table with a row for each of some things, and no column yet.
+    /// A table with a row for each item, and no column yet.
     pub fn of(rows: impl IntoIterator<Item = T>) -> Self {
         let rows: Vec<T> = rows.into_iter().collect();
         Self {
@@ -111,10 +111,10 @@ impl<T> Table<T> {
     }
 }
 
-/// The width from which on a paragraph is broken into lines.
+/// Characters in a line of a paragraph at most.
 const LINE: usize = 96;
 
-/// The width from which on a head is broken into lines where its column is no wider.
+/// Characters in a line of a head at most, unless its column is wider.
 const HEAD: usize = 14;
 
 /// A table in columns that are two spaces apart, figures and their heads on the right.
@@ -131,9 +131,12 @@ fn plain_table(head: &[String], rows: &[Vec<String>]) -> String {
         .collect();
     let line = |row: &Vec<String>| {
         let cells = row.iter().zip(&widths);
-        let cells = cells.map(|(cell, (width, is_of_figures))| match is_of_figures {
-            true => format!("{cell:>width$}"),
-            false => format!("{cell:<width$}"),
+        let cells = cells.map(|(cell, (width, is_of_figures))| {
+            if *is_of_figures {
+                format!("{cell:>width$}")
+            } else {
+                format!("{cell:<width$}")
+            }
         });
         let line = cells.collect::<Vec<_>>().join("  ");
         format!("{}\n", line.trim_end())
@@ -162,7 +165,7 @@ fn head_rows(head: &[String], rows: &[Vec<String>]) -> Vec<Vec<String>> {
     (0..count).map(row).collect()
 }
 
-/// Words in lines that are broken between words where they would be wider.
+/// A text in lines of at most `width` characters, broken between words.
 fn broken(text: &str, width: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split(' ') {

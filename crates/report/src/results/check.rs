@@ -140,9 +140,7 @@ impl Check {
             Wanted::AtLeast(limit) => self.computed >= limit,
         }
     }
-}
 
-impl Check {
     /// The check in a line for a terminal, `pass force = 0.2 % (at most 0.5 %)`, of one case of several with its name, and a remark in a line
     /// below.
     fn line(&self, case: Option<&str>) -> String {

@@ -1,4 +1,4 @@
-//! What a reader of results must know of them.
+//! Warnings and doubts about results.
 
 use std::fmt;
 
@@ -53,7 +53,7 @@ impl Finding {
         }
     }
 
-    /// The same of a diagnostic.
+    /// A doubt with the message and the hint of a diagnostic.
     pub fn doubt_of(rule: &'static str, diagnostic: Diagnostic) -> Self {
         let remedy = diagnostic.hint.unwrap_or_default();
         Self::doubt(rule, (diagnostic.message, remedy))

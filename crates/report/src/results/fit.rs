@@ -88,7 +88,7 @@ pub fn fit_json(fit: &Fit, tests: &[TestData]) -> Value {
     })
 }
 
-/// What the protocols of a biaxial test say of a law.
+/// How well a law predicts protocols of a biaxial test that were left out, and whether further ones would tell its parameters better.
 fn protocols_json(protocols: &Protocols) -> Value {
     json!({
         "left_out_percent": protocols.left_out_percent,
@@ -166,7 +166,7 @@ fn softening_json(softened: &Softened) -> Value {
 
 /// The parameters with their standard errors, and how far the law is from the data.
 pub(super) fn notes(fit: &Fit) -> Vec<String> {
-    /// So many have room in a picture.
+    /// Parameters that a picture has room for.
     const MOST: usize = 6;
     let quality = &fit.quality;
     let parameter = |(index, parameter): (usize, &Parameter)| {

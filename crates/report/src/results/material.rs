@@ -93,11 +93,12 @@ fn row(property: impl Into<String>, value: impl Into<String>) -> Row {
     (property.into(), value.into())
 }
 
-/// What a card says: law, parameters, moduli, behaviour in time, measures, ranges, source.
+/// The contents of a card: law, parameters, moduli, behaviour in time, measures, ranges, source.
 pub fn properties(card: &Card) -> Block {
-    let along = match card.law.is_isotropic() {
-        true => "",
-        false => " along the first axis",
+    let along = if card.law.is_isotropic() {
+        ""
+    } else {
+        " along the first axis"
     };
     let mut rows = vec![
         row("card", &card.name),
@@ -147,7 +148,7 @@ pub fn properties(card: &Card) -> Block {
     Block::table(&["property", "value"], rows)
 }
 
-/// What the card says of changes of volume, and what they make of tension.
+/// The moduli and energy for changes of volume, and their effect on tension.
 fn of_volume(card: &Card) -> Vec<Row> {
     let mut rows = Vec::new();
     if let Some(modulus) = card.bulk_modulus() {
@@ -170,7 +171,7 @@ fn of_volume(card: &Card) -> Vec<Row> {
     rows
 }
 
-/// Density, viscosity and relaxation, as far as the card says them.
+/// Density, viscosity and relaxation, as far as the card states them.
 fn in_time(card: &Card) -> Vec<Row> {
     let mut rows = Vec::new();
     if let Some(density) = card.density {
@@ -207,7 +208,7 @@ fn in_time(card: &Card) -> Vec<Row> {
     rows
 }
 
-/// What unloading from some stretches dissipates, of a material that softens.
+/// The energy that unloading from some stretches dissipates; empty for a material that does not soften.
 fn of_softening(card: &Card) -> Vec<Row> {
     let Some(softening) = card.law.softening() else {
         return Vec::new();

@@ -2,7 +2,7 @@
 //!
 //! | column | meaning |
 //! |---|---|
-//! | `x`, `y` | place at rest |
+//! | `x`, `y` | position at rest |
 //! | `ux`, `uy` (`u`, `v`) | displacement |
 //! | `stretch`, `load_factor`, `factor` | the load factor of a row; a stretch in % is one too |
 //! | `time` | the time of a row, the load factor unless `--time` says otherwise |
@@ -56,7 +56,7 @@ pub struct ImportSettings {
 /// A displacement field at scattered points.
 #[derive(Clone, Debug)]
 pub struct Points {
-    /// Places in mm.
+    /// Points in mm.
     pub positions: Vec<[f64; 2]>,
     /// ux, uy of point after point in mm.
     pub displacement: Vec<f64>,
@@ -122,7 +122,7 @@ pub fn read(table: &Table, settings: &ImportSettings) -> Result<Points, Error> {
     })
 }
 
-/// One place has one displacement; rows that say the same twice do no harm.
+/// Refuses two displacements of one point; equal rows are harmless.
 fn check_unique(file: &str, mut all: Vec<[[f64; 2]; 2]>) -> Result<(), Error> {
     all.sort_by(|[a, _], [b, _]| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
     let mut pairs = all.windows(2);
