@@ -23,6 +23,12 @@ pub enum Drawing {
 }
 
 impl Drawing {
+    /// Charts of one height in points, one below the other; `None` where there are none.
+    pub fn charts(charts: impl IntoIterator<Item = LineChart>, height: u32) -> Option<Self> {
+        let charts: Vec<_> = charts.into_iter().map(|chart| (chart, height)).collect();
+        (!charts.is_empty()).then_some(Self::Charts(charts))
+    }
+
     /// Whether it has only charts without a point.
     pub fn is_empty(&self) -> bool {
         match self {

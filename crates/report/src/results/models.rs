@@ -1,6 +1,6 @@
 //! Names and colours of the models in reports, files and pictures.
 
-use super::PALETTE;
+use super::{Line, PALETTE, Stroke};
 
 /// A model's name, its name in names of files and figures, and the colour of its lines.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,6 +21,11 @@ impl ModelStyle {
         } else {
             format!("{} model", self.name)
         }
+    }
+
+    /// A line of the model, with its name and colour.
+    pub fn line(self, points: impl IntoIterator<Item = [f64; 2]>, stroke: Stroke) -> Line {
+        Line::new(self.name, points, self.colour, stroke)
     }
 }
 

@@ -1,9 +1,10 @@
-//! What a study says of its pictures.
+//! The pictures that a study asks for.
 
 use super::ModelKind;
 use super::sections::read_models;
 use crate::document::{Bound, Section};
 use crate::results::{Palette, PictureFormat, PictureStyle, PictureWidth, SheetField, ShownFields};
+use crate::statistics::farthest;
 use crate::units::Dimension;
 
 /// The pictures that a study wants.
@@ -22,11 +23,11 @@ pub struct Pictures {
 /// Where on a path fields are shown.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shown {
-    /// At the last place that most models have reached.
+    /// At the last point that most models have reached.
     Last,
     /// Everywhere.
     All,
-    /// At these places.
+    /// At these points.
     At(Vec<f64>),
 }
 
@@ -45,12 +46,14 @@ impl Default for Pictures {
     }
 }
 
-/// A place on a path that is asked for counts as one of the path if it is so close to it, as a share of the path.
-const CLOSE: f64 = 1e-6;
+/// How close to a point of a path a point must be that the study asks for, to be taken for it.
+fn tolerance(path: &[f64]) -> f64 {
+    const SHARE: f64 = 1e-6;
+    SHARE * farthest(path.iter().copied()).abs()
+}
 
 impl Pictures {
-    /// Reads `[pictures]`. The places along the path, of one dimension, are under `key`; `path` are those that there are, or
-    /// none where any will do.
+    /// Reads `[pictures]`. The points along the path, of one dimension, are under `key`; `path` has those that exist, or none where all do.
     pub fn read(section: &Section, key: &'static str, dimension: Dimension, path: &[f64]) -> Self {
         let fields = read_fields(section);
         let models = read_models(section);
@@ -114,10 +117,10 @@ fn read_shown(section: &Section, key: &'static str, dimension: Dimension, path: 
     if let Some((_, shown)) = words.into_iter().find(|(name, _)| Some(*name) == word) {
         return shown;
     }
-    let length = path.iter().fold(0.0, |most: f64, at| most.max(at.abs()));
-    let on_path = |wanted: &f64| path.iter().any(|at| (at - wanted).abs() <= CLOSE * length);
-    let strange = wanted.iter().find(|at| at.is_finite() && !on_path(at));
-    if let Some(strange) = strange.filter(|_| !path.is_empty()) {
+    let tolerance = tolerance(path);
+    let on_path = |wanted: &f64| path.iter().any(|at| (at - wanted).abs() <= tolerance);
+    let unknown = wanted.iter().find(|at| at.is_finite() && !on_path(at));
+    if let Some(unknown) = unknown.filter(|_| !path.is_empty()) {
         let known: Vec<_> = path
             .iter()
             .take(MOST_NAMED)
@@ -127,25 +130,22 @@ fn read_shown(section: &Section, key: &'static str, dimension: Dimension, path: 
         let hint = format!("the study has {}{more}", known.join(", "));
         section.fault(
             key,
-            &format!("{strange} is not on the path of the study"),
+            &format!("{unknown} is not on the path of the study"),
             &hint,
         );
     }
     Shown::At(wanted)
 }
 
-/// So many places are named where one is asked for that does not exist.
+/// How many points of a path are named where a study asks for another one.
 const MOST_NAMED: usize = 12;
 
 impl Shown {
     /// The steps of a path that are shown, where `last` is the one of which most can be shown.
     pub fn steps(&self, path: &[f64], last: Option<usize>) -> Vec<usize> {
-        let length = path.iter().fold(0.0, |most: f64, at| most.max(at.abs()));
-        let is_wanted = |at: f64, wanted: &[f64]| {
-            wanted
-                .iter()
-                .any(|wanted| (at - wanted).abs() <= CLOSE * length)
-        };
+        let tolerance = tolerance(path);
+        let is_wanted =
+            |at: f64, wanted: &[f64]| wanted.iter().any(|one| (at - one).abs() <= tolerance);
         match self {
             Self::Last => last.into_iter().collect(),
             Self::All => (0..path.len()).collect(),
@@ -178,7 +178,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn places_are_those_of_the_path() {
+    fn points_are_those_of_the_path() {
         let path = [0.15, 0.3, 0.1 + 0.4];
         assert_eq!(Shown::Last.steps(&path, Some(1)), [1]);
         assert_eq!(Shown::Last.steps(&path, None), [0; 0]);

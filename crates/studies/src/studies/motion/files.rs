@@ -26,11 +26,10 @@ fn pair(upper: LineChart, lower: LineChart) -> Drawing {
 
 /// A line for each model through pairs of figures of all instants.
 fn lines(models: [&ModelMotion; 2], points: impl Fn(&ModelMotion) -> Vec<[f64; 2]>) -> Vec<Line> {
-    let line = |(model, stroke): (&ModelMotion, _)| {
-        let points = points(model);
-        Line::new(model.style().name, points, model.style().colour, stroke)
-    };
-    models.into_iter().zip(STROKES).map(line).collect()
+    let models = models.into_iter().zip(STROKES);
+    models
+        .map(|(model, stroke)| model.style().line(points(model), stroke))
+        .collect()
 }
 
 impl Motions {
@@ -138,10 +137,8 @@ fn force_figure(sheet: &MovingSheet, motions: &Motions, file: String) -> Option<
             .collect::<Vec<_>>()
     };
     let mut over_time = lines(models, in_time);
-    over_time.extend(motions.correction.motion.as_ref().map(|corrected| {
-        let points = in_time(corrected);
-        Line::new(CORRECTED.name, points, CORRECTED.colour, Stroke::Points)
-    }));
+    let corrected = motions.correction.motion.as_ref().map(in_time);
+    over_time.extend(corrected.map(|points| CORRECTED.line(points, Stroke::Points)));
     let over_displacement = lines(models, |model| {
         let groups = model.groups.iter();
         groups

@@ -12,12 +12,13 @@ use crate::results::{
     Array, Content, Drawing, FieldFigure, Figure, Grid, GridSeries, Line, LineChart, Panel,
     SheetField, Stroke, from_rest, material_chart, mesh_outlines, springs_csv,
 };
+use crate::statistics::farthest;
 use crate::studies::pictures::Shown;
 use crate::studies::series::{DRAWN, ModelSeries, stress_figures};
 use crate::studies::{ModelKind, SPRINGS_TABLE};
 
-/// The largest load factor that most can be shown of: both corrected field and finite elements, or any model.
-fn shown(models: &Models) -> Option<usize> {
+/// The last step that both the corrected field and the finite elements have reached, or else any model.
+fn last_shown(models: &Models) -> Option<usize> {
     let reached = |kind| models.of(kind).reached();
     let both = reached(ModelKind::FiniteElement).min(reached(ModelKind::Corrected));
     let shown = if both > 0 { both } else { models.reached() };
@@ -34,7 +35,7 @@ pub fn figures(
     let figure = |what: &str, caption: String, drawing| {
         Figure::new(format!("{}_{what}.png", specimen.name), caption, drawing)
     };
-    let last = shown(models);
+    let last = last_shown(models);
     let steps = specimen.pictures.shown.steps(&specimen.factors, last);
     let mut figures: Vec<Figure> = steps
         .iter()
@@ -48,7 +49,7 @@ pub fn figures(
         );
         figure("displacement_over_load", caption, drawing)
     }));
-    figures.extend(forces(specimen, models).map(|drawing| {
+    figures.extend(forces_over_factors(specimen, models).map(|drawing| {
         let caption = format!(
             "Forces of the supports over the {}: of each group along the axis of its larger force; computed at the markers only.",
             specimen.along.name()
@@ -82,15 +83,19 @@ fn materials(specimen: &Specimen, figure: &dyn Fn(&str, String, Drawing) -> Figu
     let charts = regions.map(|(_, name, card)| {
         let mut chart = material_chart(card);
         chart.title = format!("{name}: {}", chart.title);
-        (chart, 400)
+        chart
     });
-    let charts: Vec<_> = charts.collect();
-    if charts.is_empty() {
-        let caption = "The material: nominal stress over stretch.".to_owned();
-        return figure("material", caption, material_chart(&specimen.card).into());
-    }
-    let caption = "The materials of the regions: nominal stress over stretch.".to_owned();
-    figure("material", caption, Drawing::Charts(charts))
+    let (caption, drawing) = match Drawing::charts(charts, 400) {
+        Some(drawing) => (
+            "The materials of the regions: nominal stress over stretch.",
+            drawing,
+        ),
+        None => (
+            "The material: nominal stress over stretch.",
+            material_chart(&specimen.card).into(),
+        ),
+    };
+    figure("material", caption.to_owned(), drawing)
 }
 
 /// The fields of all models at one load factor: displacement, stresses and strains, distance to the finite elements.
@@ -180,7 +185,7 @@ fn chart_over_factors(
     let line = |(kind, stroke): (ModelKind, Stroke)| {
         let model = models.series(kind);
         let points = over_factors(specimen, &model, &value);
-        (points.len() > 1).then(|| Line::new(model.style.name, points, model.style.colour, stroke))
+        (points.len() > 1).then(|| model.style.line(points, stroke))
     };
     let lines = DRAWN.into_iter().filter_map(line).collect();
     LineChart::new(title, specimen.along.head(), y, lines)
@@ -189,42 +194,39 @@ fn chart_over_factors(
 /// The displacement that is measured over the load factor; `None` where it is a force.
 fn displacement_over_factors(specimen: &Specimen, models: &Models) -> Option<Drawing> {
     let measured = &models.reference.measured;
-    (measured.quantity == Quantity::Displacement).then(|| {
+    let chart = (measured.quantity == Quantity::Displacement).then(|| {
         let title = format!("Displacement of {}", measured.group);
         let y = format!("displacement along {} [mm]", measured.axis_name());
         let value = |groups: &[GroupState]| measured.of(groups);
-        let chart = chart_over_factors(specimen, models, title, &y, value);
-        Drawing::Charts(vec![(chart, 340)])
-    })
+        chart_over_factors(specimen, models, title, &y, value)
+    });
+    Drawing::charts(chart, 340)
 }
 
 /// The forces of all groups that carry one, over the load factor; `None` where there is none.
-fn forces(specimen: &Specimen, models: &Models) -> Option<Drawing> {
+fn forces_over_factors(specimen: &Specimen, models: &Models) -> Option<Drawing> {
     let largest = |group: usize, axis: usize| {
         let force = |groups: &[GroupState]| groups[group].force[axis];
-        let all = models.all_series();
-        let all = all.iter();
-        let all = all.flat_map(|model| over_factors(specimen, model, force));
-        all.fold(0.0, |most: f64, point| most.max(point[1].abs()))
+        let series = models.all_series();
+        let points = series.iter();
+        let points = points.flat_map(|model| over_factors(specimen, model, force));
+        farthest(points.map(|point| point[1])).abs()
     };
     let groups = specimen.groups();
     let axes: Vec<(usize, f64)> = (0..groups.len())
         .map(|group| [largest(group, 0), largest(group, 1)])
         .map(|[x, y]| if y > x { (1, y) } else { (0, x) })
         .collect();
-    let most = axes
-        .iter()
-        .fold(0.0, |most: f64, (_, force)| most.max(*force));
+    let most = farthest(axes.iter().map(|(_, force)| *force));
     let carrying = axes.into_iter().enumerate();
     let carrying = carrying.filter(|(_, (_, force))| *force > NO_FORCE * most);
     let chart = |(group, (axis, _)): (usize, (usize, f64))| {
         let y = format!("force along {} [N]", ["x", "y"][axis]);
         let title = format!("Force of {}", groups[group]);
         let force = |groups: &[GroupState]| groups[group].force[axis];
-        (chart_over_factors(specimen, models, title, &y, force), 340)
+        chart_over_factors(specimen, models, title, &y, force)
     };
-    let charts: Vec<_> = carrying.map(chart).collect();
-    (!charts.is_empty()).then_some(Drawing::Charts(charts))
+    Drawing::charts(carrying.map(chart), 340)
 }
 
 fn estimated_error(specimen: &Specimen, models: &Models, step: usize) -> Option<Figure> {

@@ -13,7 +13,7 @@ use crate::problem::{GroupState, Solution};
 use crate::results::models::ModelStyle;
 use crate::results::{Block, Table, or_dash};
 use crate::solve::State;
-use crate::statistics::larger;
+use crate::statistics::{farthest, larger};
 use crate::studies::ModelKind;
 use crate::units::number;
 
@@ -152,13 +152,9 @@ fn free_nodes(specimen: &Specimen, solution: &Solution) -> Option<f64> {
     let free: Vec<usize> = (0..2 * mesh.nodes.len()).filter(is_free).collect();
     let of_step = |step: usize| {
         let groups = solution.groups(step)?.iter();
-        let most = groups.fold(0.0, |most: f64, group| {
-            most.max(group.force[0].hypot(group.force[1]))
-        });
+        let most = farthest(groups.map(|group| group.force[0].hypot(group.force[1])));
         let residual = &solution.states[step].residual;
-        let largest = free.iter().fold(0.0, |largest: f64, unknown| {
-            largest.max(residual[*unknown].abs())
-        });
+        let largest = farthest(free.iter().map(|unknown| residual[*unknown])).abs();
         (most > 0.0).then(|| largest / most)
     };
     (0..solution.reached()).filter_map(of_step).reduce(larger)

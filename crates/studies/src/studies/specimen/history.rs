@@ -34,21 +34,19 @@ pub fn deviations_chart(
             };
             let points = specimen.factors.iter().zip(deviations).filter_map(point);
             let points: Vec<_> = points.collect();
-            let style = kind.style();
-            (!points.is_empty()).then(|| Line::new(style.name, points, style.colour, stroke))
+            (!points.is_empty()).then(|| kind.style().line(points, stroke))
         };
         let lines: Vec<Line> = kinds.into_iter().filter_map(line).collect();
         let y = Axis::logarithmic(&format!("{name} [%]"));
         let title = format!("Deviation of the {name} from the finite elements");
         let chart = LineChart::new(title, specimen.along.head(), y, lines);
-        (!chart.lines.is_empty()).then_some((chart, 320))
+        (!chart.lines.is_empty()).then_some(chart)
     });
-    let charts: Vec<_> = charts.collect();
     let caption = format!(
         "Deviations from the finite elements over the {}.",
         specimen.along.name()
     );
-    (!charts.is_empty()).then_some((caption, Drawing::Charts(charts)))
+    Some((caption, Drawing::charts(charts, 320)?))
 }
 
 /// How the models came to the last load factor that one of them has reached, with a caption: the residuals of those that look for an
@@ -61,15 +59,14 @@ pub fn residuals_chart(specimen: &Specimen, models: &Models) -> Option<(String, 
         let residuals = state.convergence.residuals.iter().enumerate();
         let points = residuals.map(|(iteration, size)| [iteration as f64, *size]);
         let points: Vec<_> = points.collect();
-        let style = kind.style();
-        (!points.is_empty()).then(|| Line::new(style.name, points, style.colour, Stroke::Marked))
+        (!points.is_empty()).then(|| kind.style().line(points, Stroke::Marked))
     };
     let chart = |title: &str, quantity: &str, kinds: &[ModelKind]| {
         let lines: Vec<Line> = kinds.iter().filter_map(line).collect();
         let y = Axis::logarithmic(quantity);
         let title = format!("{title} at {at}");
         let chart = LineChart::new(title, "iteration", y, lines);
-        (!chart.lines.is_empty()).then_some((chart, 340))
+        (!chart.lines.is_empty()).then_some(chart)
     };
     let forces = [ModelKind::MassSpring, ModelKind::FiniteElement];
     let charts = [
@@ -80,11 +77,11 @@ pub fn residuals_chart(specimen: &Specimen, models: &Models) -> Option<(String, 
             &[ModelKind::Corrected],
         ),
     ];
-    let charts: Vec<_> = charts.into_iter().flatten().collect();
     let caption = format!(
         "Residual of springs and finite elements, and correction of the corrected field, over iteration at {at}."
     );
-    (!charts.is_empty()).then_some((caption, Drawing::Charts(charts)))
+    let drawing = Drawing::charts(charts.into_iter().flatten(), 340)?;
+    Some((caption, drawing))
 }
 
 /// The iterations of every model at every load factor, and what they mean.

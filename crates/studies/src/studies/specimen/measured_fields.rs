@@ -154,8 +154,7 @@ impl<'a> MeasuredFields<'a> {
         let line = |(model, stroke): (usize, Stroke)| {
             let states = self.states.iter().filter(|state| state.model == model);
             let points = states.map(|state| [over(state), self.force(state)]);
-            let style = self.models[model].style;
-            Line::new(style.name, from_rest(points), style.colour, stroke)
+            self.models[model].style.line(from_rest(points), stroke)
         };
         let lines = self.shown().map(line);
         lines.filter(|line| line.points.len() > 1).collect()
@@ -174,9 +173,8 @@ impl<'a> MeasuredFields<'a> {
             })
             .collect();
         let named = |what: &str, caption: String, charts: Vec<LineChart>| {
-            let charts: Vec<_> = charts.into_iter().map(|chart| (chart, 340)).collect();
             let name = format!("{}_{what}.png", specimen.name);
-            (!charts.is_empty()).then(|| Figure::new(name, caption, Drawing::Charts(charts)))
+            Some(Figure::new(name, caption, Drawing::charts(charts, 340)?))
         };
         let along = specimen.along.name();
         let mut figures = Vec::new();
@@ -223,8 +221,7 @@ impl<'a> MeasuredFields<'a> {
                 let value = state.probes[probe]?[column];
                 Some([along.coordinate(self.specimen.factors[state.step]), value])
             });
-            let style = self.models[model].style;
-            Line::new(style.name, points, style.colour, stroke)
+            self.models[model].style.line(points, stroke)
         });
         let lines = lines.filter(|line| !line.points.is_empty()).collect();
         let name = &self.specimen.measurements.probes[probe].name;

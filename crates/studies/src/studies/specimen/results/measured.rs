@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::mesh::Mesh;
 use crate::problem::{Drive, GroupState, Load, Solution, Support};
+use crate::statistics::farthest;
 use crate::studies::specimen::problem::Specimen;
 
 /// A force or a displacement.
@@ -58,7 +59,7 @@ impl Measured {
             }
             Quantity::Displacement => {
                 let field = solution.displacement(step)?.iter();
-                let largest = field.fold(0.0, |most: f64, u| most.max(u.abs()));
+                let largest = farthest(field.copied()).abs();
                 (NO_DISPLACEMENT * largest, largest)
             }
         };
