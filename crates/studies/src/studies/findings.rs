@@ -241,7 +241,7 @@ fn several(examined: Examined) -> Option<Found> {
     let all = models.all();
     let solutions = all.map(|(kind, solution)| (kind.style().name, solution));
     // Finer meshes begin with the states of coarser ones.
-    let coarser = models.reference.coarser().iter();
+    let coarser = models.reference.coarser.iter();
     let solutions = solutions
         .into_iter()
         .chain(coarser.map(|solution| ("coarser finite elements", solution)));

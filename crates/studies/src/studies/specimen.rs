@@ -35,7 +35,7 @@ pub use problem::{
     GridCorrection, GridElements, Method, NEWTON, Outline, PlateGrids, Refinement, Specimen,
 };
 pub(crate) use read::{read_measurements, read_moving};
-use results::end::{End, Run, tell};
+use results::end::{End, Run};
 use results::models::Models;
 use results::verdict;
 pub use results::{finest_mesh, force_with_error, one_model};
@@ -108,7 +108,7 @@ pub fn compute(specimen: &Specimen, progress: Progress) -> Result<Outcome, Error
         return Err(first.error());
     }
     let mut outcome = outcome::outcome(specimen, &models);
-    tell(specimen, &models.reference.measured, ends, &mut outcome);
+    results::end::report(specimen, &models.reference.measured, ends, &mut outcome);
     Ok(outcome)
 }
 

@@ -188,7 +188,7 @@ pub fn unjudged_moment(specimen: &Specimen, models: &Models) -> Option<String> {
     if measured.quantity != Quantity::Force {
         return None;
     }
-    measured.none_of(finest, step)?;
+    measured.negligible_beside(finest, step)?;
     let of = |solution: &Solution| Some(solution.groups(step)?[measured.index]);
     let (expected, computed) = (of(finest)?, of(corrected)?);
     let [.., side] = scales(specimen, models);

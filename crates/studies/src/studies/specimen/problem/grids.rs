@@ -83,22 +83,9 @@ impl GridElements {
 }
 
 impl PlateGrids {
-    /// A coarse mesh with the groups of the plate.
-    pub fn coarse(&self) -> Mesh {
-        Mesh::plate(self.size, [2, 2], CellShape::Quad4)
-    }
-
     /// The lattice.
     pub fn lattice(&self) -> Mesh {
         Mesh::plate(self.size, self.cells, CellShape::Quad4)
-    }
-
-    /// The nodes of the corrected fields as cells of four nodes.
-    pub fn corrected_mesh(&self) -> Mesh {
-        let GridCorrection {
-            scheme, grading, ..
-        } = self.correction;
-        scheme.graded(self.size, self.cells, grading)
     }
 
     /// Whether the finite elements are the corrected field once more: the same equations on the same nodes.

@@ -1,13 +1,13 @@
-//! What of a specimen is meshed, and how.
+//! The outline of a specimen, and its meshes.
 
 use crate::budget::Need;
 use crate::mesh::{CellShape, Mesh, Misfit, Shape};
 
 use super::Refinement;
-use super::grids::{HALVINGS, PlateGrids};
+use super::grids::{GridCorrection, HALVINGS, PlateGrids};
 use super::shape_words::describe;
 
-/// What is meshed, and how.
+/// The outline of a specimen, and how finely it is meshed.
 pub enum Outline {
     /// A shape by its measures.
     Shape {
@@ -26,7 +26,7 @@ pub enum Outline {
         mesh: Box<Mesh>,
         /// The finite elements on it.
         element: CellShape,
-        /// Whether straight edges are meant where they turn as a curve's.
+        /// Whether straight edges are the outline itself where they turn as chords of a curve would.
         polygons: bool,
         /// How often the finite elements' cells are halved, up to two times.
         halvings: usize,
@@ -52,7 +52,7 @@ impl Outline {
         match self {
             Self::Shape { shape, .. } => shape.mesh(2, CellShape::Quad4),
             Self::File { mesh, .. } => (**mesh).clone(),
-            Self::Grid(grids) => grids.coarse(),
+            Self::Grid(grids) => Mesh::plate(grids.size, [2, 2], CellShape::Quad4),
         }
     }
 
@@ -118,7 +118,7 @@ impl Outline {
         }
     }
 
-    /// Whether it is a shape by its measures, and no file's.
+    /// Whether it is a shape by its measures.
     pub fn is_shape(&self) -> bool {
         matches!(self, Self::Shape { .. })
     }
@@ -167,7 +167,12 @@ impl Outline {
     pub fn corrected_mesh(&self) -> Mesh {
         match self {
             Self::Shape { .. } | Self::File { .. } => self.reference_mesh(0),
-            Self::Grid(grids) => grids.corrected_mesh(),
+            Self::Grid(grids) => {
+                let GridCorrection {
+                    scheme, grading, ..
+                } = grids.correction;
+                scheme.graded(grids.size, grids.cells, grading)
+            }
         }
     }
 
@@ -210,12 +215,6 @@ impl Outline {
             }
             Self::Grid(grids) => grids.elements.mesh(grids.size, level),
         }
-    }
-
-    /// The meshes of all levels, from coarse to fine.
-    pub fn reference_meshes(&self) -> Vec<Mesh> {
-        let levels = 0..=self.halvings();
-        levels.map(|level| self.reference_mesh(level)).collect()
     }
 
     /// The mesh of the finest level.
@@ -279,7 +278,7 @@ impl Outline {
         }
     }
 
-    /// A refined mesh with its sides on the outline; that of a file is the one of its mesh.
+    /// A refined mesh with its sides on the outline; the outline of a file is that of its mesh.
     pub fn fitted(&self, mut mesh: Mesh) -> Mesh {
         if let Self::Shape { shape, .. } = self {
             shape.fit(&mut mesh);
@@ -296,7 +295,7 @@ fn coarsest_cells(cells: usize, element: CellShape) -> usize {
     }
 }
 
-/// A place without what rounding has left of it, compared with the size of the mesh.
+/// A coordinate without rounding errors, which are small compared with the size of the mesh.
 fn without_rounding(position: f64, size: f64) -> f64 {
     const ROUNDING: f64 = 1e-12;
     if position.abs() < ROUNDING * size {
@@ -322,7 +321,7 @@ mod tests {
     use super::without_rounding;
 
     #[test]
-    fn places_are_told_without_what_rounding_left() {
+    fn coordinates_are_shown_without_rounding_errors() {
         let rounded = |position: f64| without_rounding(position, 20.0).to_string();
         assert_eq!(rounded(6.123233995736766e-16), "0");
         assert_eq!(rounded(20.000000000000004), "20");

@@ -26,8 +26,8 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// A run of its own for meshes whose results are not given: where their paths end is not told.
-    pub fn aside(&self) -> Self {
+    /// A separate run for auxiliary meshes, whose ends are not reported.
+    pub fn unreported(&self) -> Self {
         Self::new(self.specimen, self.progress)
     }
 
@@ -48,12 +48,12 @@ pub struct End {
 
 /// The last equilibrium of a path.
 struct Last {
-    /// Begin of the file's name.
+    /// The beginning of its file's name.
     file: String,
     mesh: Mesh,
     state: State,
     groups: Vec<GroupState>,
-    /// Whether it lies between two load factors of the study, so that nothing else holds it.
+    /// Whether it lies between two load factors of the study, so that it is in no other file.
     between: bool,
     /// The fields before, where the material remembers them.
     past: Vec<Vec<f64>>,
@@ -83,7 +83,7 @@ impl End {
         }
     }
 
-    /// An end of the corrected field at a load factor that has no way to it.
+    /// An end of the corrected field at a load factor that could not be reached.
     pub fn at(specimen: &Specimen, factor: f64, fault: SolveFault) -> Self {
         Self {
             model: "corrector".to_owned(),
@@ -113,14 +113,14 @@ impl End {
     }
 }
 
-/// What was the last equilibrium of any of the paths, for a choice of what is measured.
+/// The groups in the last equilibrium of any path that ended, for the choice of what is measured.
 pub fn last_groups(ends: &[End]) -> Option<(&Mesh, &[GroupState])> {
     let last = ends.iter().rev().find_map(|end| end.last.as_ref())?;
     Some((&last.mesh, &last.groups))
 }
 
 /// Adds the ends to an outcome: a requirement that is not met, a row of a table, a file.
-pub fn tell(specimen: &Specimen, measured: &Measured, ends: Vec<End>, outcome: &mut Outcome) {
+pub fn report(specimen: &Specimen, measured: &Measured, ends: Vec<End>, outcome: &mut Outcome) {
     let mut rows = Vec::new();
     for end in ends {
         outcome.ended(&end.error());

@@ -1,4 +1,4 @@
-//! What is compared at the measured group: the force of its supports, or a displacement where that force is given.
+//! The quantity that is compared at the measured group: the force of its supports, or a displacement where that force is given.
 
 use std::collections::BTreeMap;
 
@@ -19,7 +19,7 @@ pub enum Quantity {
 /// What is measured, where, and along which axis.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Measured {
-    /// What.
+    /// The quantity.
     pub quantity: Quantity,
     /// The group.
     pub group: String,
@@ -44,15 +44,14 @@ impl Measured {
         solution.groups(step).map(|groups| self.of(groups))
     }
 
-    /// Whether the value at a load factor is none, and what it is none of: a force next to those on the group's nodes in N, a
-    /// displacement next to the largest one in mm; `None` where it is something, or a solution has not reached it.
-    pub fn none_of(&self, solution: &Solution, step: usize) -> Option<f64> {
-        /// Next to the sum of the sizes of the nodes' forces: closed edges pull and press on themselves, and what a mesh
-        /// leaves of that is no force.
+    /// The size beside which the value at a load factor is negligible: of a force that of the forces on the group's nodes in N, of a
+    /// displacement the largest one in mm; `None` where it is not negligible, or a solution has not reached the load factor.
+    pub fn negligible_beside(&self, solution: &Solution, step: usize) -> Option<f64> {
+        /// A share of the sum of the sizes of the nodes' forces: those on a closed edge cancel but for discretisation errors.
         const NO_FORCE: f64 = 1e-3;
         const NO_DISPLACEMENT: f64 = 1e-9;
         let groups = solution.groups(step)?;
-        let (none, all) = match self.quantity {
+        let (limit, scale) = match self.quantity {
             Quantity::Force => {
                 let GroupState { size, rounding, .. } = groups[self.index];
                 ((NO_FORCE * size).max(rounding), size.max(rounding))
@@ -63,7 +62,7 @@ impl Measured {
                 (NO_DISPLACEMENT * largest, largest)
             }
         };
-        (self.of(groups).abs() <= none).then_some(all)
+        (self.of(groups).abs() <= limit).then_some(scale)
     }
 
     /// `force` or `displacement of the group`.
@@ -104,16 +103,15 @@ impl Measured {
 /// The unknowns that are held, each with the number of the support that holds it.
 type Held = BTreeMap<usize, usize>;
 
-/// What the loads push: a group, and the axis where they have a direction.
+/// A group that loads push, and the axis along which they do; `None` where they have no direction.
 struct Pushed<'a> {
     group: &'a str,
     axis: Option<usize>,
 }
 
 impl Specimen {
-    /// What is measured, by what happens at the groups in the last state of a model on a mesh: along the axis of the larger
-    /// component. A force that equilibrium alone gives says nothing of a model; then it is the displacement of what the
-    /// loads push.
+    /// The quantity that is measured, chosen by the groups' last state in a model on a mesh: the force along the axis of its larger component.
+    /// A force that follows from equilibrium alone does not depend on the model; then it is the displacement of a group that loads push.
     pub fn measured(&self, mesh: &Mesh, last: &[GroupState]) -> Measured {
         let held = self.problem.held_by(mesh).unwrap_or_default();
         let moved = self.pushed().filter(|pushed| moves(mesh, &held, pushed));
@@ -145,7 +143,7 @@ impl Specimen {
         }
     }
 
-    /// The force along x, where not one equilibrium says what is larger.
+    /// The force along x, where no equilibrium shows which component is larger.
     pub fn measured_at_rest(&self) -> Measured {
         let at_rest = vec![GroupState::default(); self.groups().len()];
         self.along_larger(&self.group, &at_rest, Quantity::Force)

@@ -21,8 +21,8 @@ pub struct Reference {
     pub measured: Measured,
     /// One a load factor; `None` where the tangent of that state gives none.
     pub estimates: Vec<Option<ErrorEstimate>>,
-    /// Up to two coarser meshes, from coarse to fine.
-    pub(super) coarser: Vec<Solution>,
+    /// On up to two coarser meshes, from coarse to fine.
+    pub coarser: Vec<Solution>,
     /// Whether the meshes are a plate's grids, whose grading towards the corners lets three of them show the order that they have.
     pub(super) on_grids: bool,
     /// The rounds of local refinement; none where the meshes are halved.
@@ -79,11 +79,6 @@ impl Reference {
             displacement: Vec::new(),
             of_all_nodes: Vec::new(),
         }
-    }
-
-    /// The solutions on coarser meshes, from coarse to fine.
-    pub fn coarser(&self) -> &[Solution] {
-        &self.coarser
     }
 
     /// How many load factors the finest mesh has reached.
@@ -161,14 +156,16 @@ impl Reference {
         }
     }
 
-    /// Whether what is measured is none at a load factor, so that there is no error of it.
-    fn measures_none(&self, step: usize) -> bool {
-        self.measured.none_of(&self.finest, step).is_some()
+    /// Whether what is measured is negligible at a load factor, so that it has no relative error.
+    fn is_negligible(&self, step: usize) -> bool {
+        self.measured
+            .negligible_beside(&self.finest, step)
+            .is_some()
     }
 
     /// What the curves that a file's edges stand for change in what is measured at a load factor, in %.
     fn outline_percent(&self, step: usize) -> Option<f64> {
-        if self.measures_none(step) {
+        if self.is_negligible(step) {
             return Some(0.0);
         }
         let change = self.outline.as_ref()?.get(step)?.measured;
@@ -206,7 +203,7 @@ impl Reference {
         if self.coarser.len() != 2 || !self.rounds.is_empty() {
             return None;
         }
-        if self.measures_none(step) {
+        if self.is_negligible(step) {
             return Some(0.0);
         }
         let values @ [_, middle, fine] = self.on_three_meshes(step)?;
@@ -241,7 +238,7 @@ impl Reference {
 
     /// The error of what is measured by recovery at a load factor in %.
     pub fn recovered_percent(&self, step: usize) -> Option<f64> {
-        if self.measures_none(step) {
+        if self.is_negligible(step) {
             return Some(0.0);
         }
         let estimate = self.estimates.get(step)?.as_ref()?;
@@ -345,10 +342,4 @@ impl Reference {
             1.0
         }
     }
-}
-
-/// The displacement of a solution at the nodes of a mesh; `None` where it has not reached a load factor.
-pub(super) fn on_nodes_of(mesh: &Mesh, solution: &Solution, step: usize) -> Option<Vec<f64>> {
-    let displacement = solution.displacement(step)?;
-    Some(solution.mesh.displacement_on(displacement, mesh))
 }

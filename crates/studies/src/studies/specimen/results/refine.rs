@@ -4,7 +4,7 @@
 use super::end::{End, Run, last_groups};
 use super::lattice::solve;
 use super::measured::Measured;
-use super::reference::{OutlineChange, Reference, Round, on_nodes_of};
+use super::reference::{OutlineChange, Reference, Round};
 use crate::compare::area_weighted_percent;
 use crate::error::Error;
 use crate::finite_element::Quarter;
@@ -100,7 +100,7 @@ impl Reference {
             let all = vec![true; triangles.cell_count()];
             let outline = &run.specimen.outline;
             let mesh = outline.elements_on(&outline.fitted(triangles.refined_where(&all)));
-            on_mesh(&mut run.aside(), &mesh, Some(finest), FILE)
+            on_mesh(&mut run.unreported(), &mesh, Some(finest), FILE)
         });
         let all_halved = all_halved.transpose()?;
         Self::of_meshes(run, meshes, rounds, all_halved)
@@ -152,12 +152,13 @@ fn refined(run: &mut Run, goal: Refinement) -> Result<Refined, Error> {
 
 /// The finite elements on all meshes, each with first guesses of the one before.
 fn nested(run: &mut Run) -> Result<Vec<Solution>, Error> {
-    let meshes = run.specimen.outline.reference_meshes();
-    let files = &FILES[FILES.len() - meshes.len()..];
+    let outline = &run.specimen.outline;
+    let finest = outline.halvings();
     let mut solutions: Vec<Solution> = Vec::new();
-    for (mesh, file) in meshes.iter().zip(files) {
-        let coarser = solutions.last();
-        solutions.push(on_mesh(run, mesh, coarser, file)?);
+    for level in 0..=finest {
+        let file = FILES[FILES.len() - 1 - finest + level];
+        let mesh = outline.reference_mesh(level);
+        solutions.push(on_mesh(run, &mesh, solutions.last(), file)?);
     }
     Ok(solutions)
 }
@@ -168,7 +169,7 @@ pub fn finest(run: &mut Run) -> Result<Solution, Error> {
         let finest = refined(run, goal)?.meshes.pop();
         return Ok(finest.expect("a mesh at least"));
     }
-    let mut all = run.aside();
+    let mut all = run.unreported();
     let finest = nested(&mut all)?.pop();
     let finest = finest.expect("a mesh at least");
     let is_complete = finest.reached() == run.specimen.factors.len();
@@ -249,7 +250,7 @@ fn outline_changes(
     let Some((rounded, factor)) = specimen.outline.rounded_mesh() else {
         return Ok(None);
     };
-    let on = |mesh: &Mesh| on_mesh(&mut run.aside(), mesh, middle, FILE);
+    let on = |mesh: &Mesh| on_mesh(&mut run.unreported(), mesh, middle, FILE);
     let rounded = on(&rounded)?;
     let halved;
     let middle = match middle {
@@ -261,12 +262,15 @@ fn outline_changes(
     };
     let corrected = specimen.outline.corrected_mesh();
     let change = |step| {
-        let [curved, straight] =
-            [&rounded, middle].map(|solution| on_nodes_of(&corrected, solution, step));
+        let on_nodes = |solution: &Solution| {
+            let displacement = solution.displacement(step)?;
+            Some(solution.mesh.displacement_on(displacement, &corrected))
+        };
+        let (curved, straight) = (on_nodes(&rounded)?, on_nodes(middle)?);
         Some(OutlineChange {
             measured: factor * (what.at(&rounded, step)? - what.at(middle, step)?),
             displacement_percent: factor.abs()
-                * area_weighted_percent(&corrected, &curved?, &straight?),
+                * area_weighted_percent(&corrected, &curved, &straight),
         })
     };
     let steps = 0..rounded.reached().min(middle.reached());

@@ -1,4 +1,4 @@
-//! What a specimen's study requires, judged by finite elements with an error of their own.
+//! The requirements of a specimen's study, judged by finite elements whose own error is known.
 
 use super::models::Models;
 use crate::compare::area_weighted_percent;
@@ -33,8 +33,8 @@ pub struct Deviation {
     pub corrected: Distance,
     /// The finite elements' own errors of displacement, departure and what is measured in %; not a number where they are not known.
     pub reference_errors: [f64; 3],
-    /// Whether what is measured is none, of the corrected field and of the finite elements.
-    pub measures_none: bool,
+    /// Whether what is measured is negligible, of the corrected field and of the finite elements.
+    pub is_negligible: bool,
 }
 
 /// The quantities that are judged.
@@ -96,9 +96,9 @@ pub fn distance(
     let displacement = area_weighted_percent(mesh, field, expected);
     let [value, measured] = [solution, finest].map(|solved| what.at(solved, step));
     let (value, measured) = (value?, measured?);
-    let measured = match what.none_of(finest, step) {
-        Some(_) if what.none_of(solution, step).is_some() => 0.0,
-        Some(all) => 100.0 * (value - measured) / all,
+    let measured = match what.negligible_beside(finest, step) {
+        Some(_) if what.negligible_beside(solution, step).is_some() => 0.0,
+        Some(scale) => 100.0 * (value - measured) / scale,
         None if value == measured => 0.0,
         None => 100.0 * (value / measured - 1.0),
     };
@@ -124,7 +124,13 @@ pub fn deviations(specimen: &Specimen, models: &Models) -> Vec<Option<Deviation>
         let reference = &models.reference;
         let displacement = reference.displacement_percent(step).unwrap_or(f64::NAN);
         let share = corrected.departure_share.unwrap_or(f64::NAN);
-        let is_none = |solved| reference.measured.none_of(solved, step).is_some();
+        let is_negligible = |kind| {
+            let solution = models.of(kind);
+            reference
+                .measured
+                .negligible_beside(solution, step)
+                .is_some()
+        };
         Some(Deviation {
             springs: of(ModelKind::MassSpring),
             corrected,
@@ -133,7 +139,8 @@ pub fn deviations(specimen: &Specimen, models: &Models) -> Vec<Option<Deviation>
                 displacement / share,
                 reference.measured_percent(step).unwrap_or(f64::NAN),
             ],
-            measures_none: is_none(&reference.finest) && is_none(models.of(ModelKind::Corrected)),
+            is_negligible: is_negligible(ModelKind::FiniteElement)
+                && is_negligible(ModelKind::Corrected),
         })
     };
     (0..specimen.factors.len()).map(deviation).collect()
@@ -159,7 +166,7 @@ fn worst(pairs: impl Iterator<Item = [f64; 2]> + Clone) -> [f64; 2] {
         }
     });
     let above = pairs.map(|[d, e]| d + e - deviation);
-    // A number that is not known stays so.
+    // An error that is not known stays NaN.
     [deviation, above.fold(error, larger)]
 }
 
@@ -177,10 +184,10 @@ pub fn checks(specimen: &Specimen, models: &Models, deviations: &[Deviation]) ->
 
 const SOURCE: &str = "the study's tolerance";
 
-/// Why what is measured needs no comparison.
+/// The reason why negligible forces or displacements are not compared.
 const NOTHING: &str = "nothing to compare: both are zero relative to the forces on single nodes, or to the largest displacement";
 
-/// Why finite elements that are the corrected field's own equations judge nothing.
+/// The judgement by finite elements that solve the corrected field's own equations.
 fn own_reference() -> Judgement {
     Judgement::CannotBeJudged {
         reason: "the finite elements solve the corrected field's own equations on the same nodes"
@@ -217,7 +224,7 @@ fn deviation_checks(
         });
         let [deviation, error] = worst(pairs);
         let nothing =
-            judged == Judged::Measured && deviations.iter().all(|entry| entry.measures_none);
+            judged == Judged::Measured && deviations.iter().all(|entry| entry.is_negligible);
         let judgement = if nothing {
             Judgement::Exact(NOTHING)
         } else if is_own_reference(specimen) {
