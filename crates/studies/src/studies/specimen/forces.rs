@@ -8,51 +8,58 @@ use super::problem::Specimen;
 use super::results::measured::Quantity;
 use super::results::models::Models;
 use crate::compare::judgement::percent;
-use crate::mesh::Mesh;
 use crate::problem::{GroupState, Solution};
 use crate::results::models::ModelStyle;
 use crate::results::{Block, Table, or_dash};
-use crate::solve::State;
 use crate::statistics::{farthest, larger};
 use crate::studies::ModelKind;
 use crate::units::number;
 
 /// A model's group at a load factor.
 struct GroupRow<'a> {
-    factor: f64,
+    step: usize,
     group: &'a str,
     model: ModelStyle,
     state: &'a GroupState,
-    /// The whole field, and its mesh.
-    field: (&'a State, &'a Mesh),
-    /// The strain energy in mJ.
-    energy: f64,
+    solution: &'a Solution,
 }
 
 /// All groups of all models at a load factor.
 fn groups_at<'a>(specimen: &'a Specimen, models: &'a Models, step: usize) -> Vec<GroupRow<'a>> {
-    let factor = specimen.factors[step];
     let of_model = |(kind, solution): (ModelKind, &'a Solution)| {
-        let field = (solution.states.get(step)?, &solution.mesh);
-        let energy = solution.energies[step];
         let groups = specimen.groups().into_iter().zip(solution.groups(step)?);
         let row = move |(group, state)| GroupRow {
-            factor,
+            step,
             group,
             model: kind.style(),
             state,
-            field,
-            energy,
+            solution,
         };
-        Some(groups.map(row).collect::<Vec<_>>())
+        Some(groups.map(row))
     };
-    models
-        .all()
-        .into_iter()
-        .filter_map(of_model)
-        .flatten()
-        .collect()
+    let models = models.all().into_iter();
+    models.filter_map(of_model).flatten().collect()
 }
+
+/// A value of a group with its head.
+type Column = (&'static str, fn(&GroupState) -> f64);
+
+const COLUMNS: [Column; 5] = [
+    ("force along x [N]", |state| state.carried()[0]),
+    ("force along y [N]", |state| state.carried()[1]),
+    ("moment about the group's middle [N·mm]", |state| {
+        state.carried()[2]
+    }),
+    ("mean displacement along x [mm]", |state| {
+        state.displacement[0]
+    }),
+    ("mean displacement along y [mm]", |state| {
+        state.displacement[1]
+    }),
+];
+
+/// Values below this share of the largest force, its moment or the sheet's side are rounding.
+const ROUNDING: f64 = 1e-12;
 
 /// A table of all groups in all models at all load factors.
 pub fn table(specimen: &Specimen, models: &Models, balances: &[Balance]) -> Vec<Block> {
@@ -63,22 +70,18 @@ pub fn table(specimen: &Specimen, models: &Models, balances: &[Balance]) -> Vec<
         rows.sort_by_key(|row| groups.iter().position(|group| *group == row.group));
         rows
     });
-    let scales = scales(specimen, models);
+    let [force, moment, side] = scales(specimen, models);
     let mut table = Table::of(rows)
         .column(specimen.along.head(), |row| {
-            specimen.along.value(row.factor)
+            specimen.along.value(specimen.factors[row.step])
         })
         .column("group", |row| row.group.to_owned())
         .column("model", |row| row.model.name.to_owned());
-    let heads = [
-        "force along x [N]",
-        "force along y [N]",
-        "moment about the group's middle [N·mm]",
-        "mean displacement along x [mm]",
-        "mean displacement along y [mm]",
-    ];
-    for (index, head) in heads.into_iter().enumerate() {
-        table = table.column(head, |row| cells(row.state, scales)[index].clone());
+    for ((head, value), scale) in COLUMNS.into_iter().zip([force, force, moment, side, side]) {
+        table = table.column(head, |row| match value(row.state) {
+            rounding if rounding.abs() < ROUNDING * scale => number(0.0),
+            value => number(value),
+        });
     }
     let text = "Forces of the supports on the specimen, positive along the axes, and their moments about the middle of the deformed group, positive \
                 counter-clockwise. A force prescribed on a grip counts as a support force. Values that are zero except for rounding are shown as 0. \
@@ -97,7 +100,9 @@ pub fn csv(specimen: &Specimen, models: &Models) -> String {
     let steps = 0..specimen.factors.len();
     let is_plate = specimen.grids().is_some();
     Table::of(steps.flat_map(|step| groups_at(specimen, models, step)))
-        .column(specimen.along.column(), |row| row.factor.to_string())
+        .column(specimen.along.column(), |row| {
+            specimen.factors[row.step].to_string()
+        })
         .column("group", |row| row.group.to_owned())
         .column("model", |row| row.model.name.to_owned())
         .column("force_x_N", |row| row.state.force[0].to_string())
@@ -109,10 +114,13 @@ pub fn csv(specimen: &Specimen, models: &Models) -> String {
         .column("displacement_y_mm", |row| {
             row.state.displacement[1].to_string()
         })
-        .column("strain_energy_mJ", |row| row.energy.to_string())
+        .column("strain_energy_mJ", |row| {
+            row.solution.energies[row.step].to_string()
+        })
         .column_if(is_plate, "mid_width_mm", |row| {
-            let (field, mesh) = row.field;
-            mesh.mid_width(&field.displacement).to_string()
+            let field = &row.solution.states[row.step];
+            let width = row.solution.mesh.mid_width(&field.displacement);
+            width.to_string()
         })
         .csv()
 }
@@ -223,27 +231,6 @@ fn scales(specimen: &Specimen, models: &Models) -> [f64; 3] {
     let [low, high] = models.on_lattice.springs.mesh.bounding_box();
     let side = (high[0] - low[0]).max(high[1] - low[1]);
     [force, force * side, side]
-}
-
-fn cells(state: &GroupState, [force, moment, side]: [f64; 3]) -> [String; 5] {
-    const ROUNDING: f64 = 1e-12;
-    let [x, y, turning] = state.carried();
-    let [u, v] = state.displacement;
-    let shown = |value: f64, scale: f64| {
-        if value.abs() < ROUNDING * scale {
-            number(0.0)
-        } else {
-            number(value)
-        }
-    };
-    let all = [
-        (x, force),
-        (y, force),
-        (turning, moment),
-        (u, side),
-        (v, side),
-    ];
-    all.map(|(value, scale)| shown(value, scale))
 }
 
 /// What happens at all groups in a model at a load factor, for machines; `None` where it has no solution.

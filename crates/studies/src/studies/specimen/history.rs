@@ -2,7 +2,7 @@
 
 use super::problem::Specimen;
 use super::results::models::Models;
-use super::results::verdict::{Deviation, Distance};
+use super::results::verdict::{Deviation, Measure};
 use crate::corrector::Multipliers;
 use crate::corrector::plate::{EQUILIBRIUM, FREE_EDGES, GRIPS};
 use crate::corrector::specimen::SUPPORTS;
@@ -15,21 +15,18 @@ pub fn deviations_chart(
     models: &Models,
     deviations: &[Option<Deviation>],
 ) -> Option<(String, Drawing)> {
-    type Measure = fn(&Distance) -> Option<f64>;
-    let displacement: Measure = |distance| Some(distance.displacement);
-    let departure: Measure = |distance| distance.departure();
-    let measured: Measure = |distance| Some(distance.measured.abs());
+    let what = models.reference.measured.name();
     let measures = [
-        ("displacement", displacement, Stroke::Ringed),
-        ("departure", departure, Stroke::Marked),
-        (models.reference.measured.name(), measured, Stroke::Marked),
+        ("displacement", Measure::Displacement, Stroke::Ringed),
+        ("departure", Measure::Departure, Stroke::Marked),
+        (what, Measure::Measured, Stroke::Marked),
     ];
     let kinds = [ModelKind::MassSpring, ModelKind::Corrected];
     let charts = measures.into_iter().filter_map(|(name, measure, stroke)| {
         let line = |kind: ModelKind| {
             let point = |(factor, deviation): (&f64, &Option<Deviation>)| {
                 let distance = deviation.as_ref()?.of(kind)?;
-                let value = measure(&distance).filter(|value| *value > 0.0)?;
+                let value = distance.by(measure).filter(|value| *value > 0.0)?;
                 Some([specimen.along.coordinate(*factor), value])
             };
             let points = specimen.factors.iter().zip(deviations).filter_map(point);

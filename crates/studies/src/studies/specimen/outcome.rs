@@ -8,8 +8,9 @@ use super::headline::headline;
 use super::measured_fields::MeasuredFields;
 use super::problem::Specimen;
 use super::results::corrected_fields::Start;
+use super::results::measured::Quantity;
 use super::results::models::Models;
-use super::results::verdict::{Deviation, Distance, checks, deviations};
+use super::results::verdict::{Deviation, Distance, Measure, checks, deviations};
 use super::{forces, history, statement, work};
 use crate::problem::Solution;
 use crate::results::{Block, Outcome, Step, Table, object, or_dash, pictures};
@@ -88,35 +89,21 @@ fn blocks(
     blocks
 }
 
-/// A measure of the distance to the finite elements: its name, its value, and its decimals in the report, and in the terminal of springs and of the
-/// corrected field.
-struct Measure {
-    name: &'static str,
-    value: fn(&Distance) -> Option<f64>,
-    decimals: [usize; 2],
-}
-
-/// The measures of a terminal: displacement, of a plate the departure, and what is measured.
-fn measures(specimen: &Specimen, models: &Models) -> Vec<Measure> {
-    let what = match models.reference.measured.unit() {
-        "N" => "force",
-        _ => "group",
+/// The measures that a terminal shows with their names, and their decimals of the springs and of the corrected field.
+fn measures(specimen: &Specimen, models: &Models) -> Vec<(Measure, &'static str, [usize; 2])> {
+    let what = match models.reference.measured.quantity {
+        Quantity::Force => "force",
+        Quantity::Displacement => "group",
     };
-    let of = |name, value, decimals| Measure {
-        name,
-        value,
-        decimals,
-    };
-    let displacement = of("displacement", |one| Some(one.displacement), [3, 4]);
-    let departure = of("departure", Distance::departure, [2, 3]);
-    let measured = of(what, |distance| Some(distance.measured.abs()), [2, 3]);
-    let is_plate = specimen.grids().is_some();
-    let departure = is_plate.then_some(departure);
-    [displacement]
-        .into_iter()
-        .chain(departure)
-        .chain([measured])
-        .collect()
+    let mut measures = vec![
+        (Measure::Displacement, "displacement", [3, 4]),
+        (Measure::Departure, "departure", [2, 3]),
+        (Measure::Measured, what, [2, 3]),
+    ];
+    if specimen.grids().is_none() {
+        measures.retain(|(measure, ..)| *measure != Measure::Departure);
+    }
+    measures
 }
 
 /// The deviations of the load factors that have some.
@@ -138,13 +125,12 @@ fn agreement(specimen: &Specimen, models: &Models, deviations: &[Option<Deviatio
         return String::new();
     }
     for (index, kind) in CORRECTED_LAST.into_iter().enumerate() {
-        for measure in measures(specimen, models) {
-            let head = format!("{}: {}", kind.style().name, measure.name);
+        for (measure, name, decimals) in measures(specimen, models) {
+            let head = format!("{}: {name}", kind.style().name);
             table = table.column(head, |(_, deviation)| {
-                let value = deviation
-                    .of(kind)
-                    .and_then(|distance| (measure.value)(&distance));
-                figure(value, measure.decimals[index])
+                let distance = deviation.of(kind);
+                let value = distance.and_then(|distance| distance.by(measure));
+                figure(value, decimals[index])
             });
         }
     }

@@ -37,11 +37,14 @@ pub struct Deviation {
     pub is_negligible: bool,
 }
 
-/// The quantities that are judged.
+/// A measure of the distance to the finite elements.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Judged {
+pub enum Measure {
+    /// Of the displacement.
     Displacement,
+    /// Of the departure from the affine stretch.
     Departure,
+    /// Of what is measured.
     Measured,
 }
 
@@ -56,11 +59,12 @@ impl Distance {
         })
     }
 
-    fn size(&self, judged: Judged) -> f64 {
-        match judged {
-            Judged::Displacement => self.displacement,
-            Judged::Departure => self.departure().unwrap_or(f64::NAN),
-            Judged::Measured => self.measured.abs(),
+    /// The distance by a measure in %; `None` of the departure where the specimen is no plate.
+    pub fn by(&self, measure: Measure) -> Option<f64> {
+        match measure {
+            Measure::Displacement => Some(self.displacement),
+            Measure::Departure => self.departure(),
+            Measure::Measured => Some(self.measured.abs()),
         }
     }
 }
@@ -81,8 +85,8 @@ impl Deviation {
     }
 }
 
-/// The deviation of a model from the finite elements at the load factor of a number; `None` where one of them has not reached it.
-pub fn distance(
+/// The deviation of a model from the finite elements at a step; `None` where one of them has not reached it.
+fn distance(
     specimen: &Specimen,
     models: &Models,
     kind: ModelKind,
@@ -206,25 +210,25 @@ fn deviation_checks(
     let what = models.reference.measured.name();
     let judged = [
         (
-            Judged::Displacement,
+            Measure::Displacement,
             "displacement",
             Some(limits.displacement_percent),
         ),
-        (Judged::Departure, "departure", limits.departure_percent),
-        (Judged::Measured, what, Some(limits.force_percent)),
+        (Measure::Departure, "departure", limits.departure_percent),
+        (Measure::Measured, what, Some(limits.force_percent)),
     ];
-    let check = |(judged, name, limit): (Judged, &str, Option<f64>)| {
+    let check = |(measure, name, limit): (Measure, &str, Option<f64>)| {
         let limit = limit?;
         let pairs = deviations.iter();
         let pairs = pairs.map(|entry| {
             [
-                entry.corrected.size(judged),
-                entry.reference_errors[judged as usize],
+                entry.corrected.by(measure).unwrap_or(f64::NAN),
+                entry.reference_errors[measure as usize],
             ]
         });
         let [deviation, error] = worst(pairs);
         let nothing =
-            judged == Judged::Measured && deviations.iter().all(|entry| entry.is_negligible);
+            measure == Measure::Measured && deviations.iter().all(|entry| entry.is_negligible);
         let judgement = if nothing {
             Judgement::Exact(NOTHING)
         } else if is_own_reference(specimen) {
