@@ -1,4 +1,4 @@
-//! What a reader must know of the states of a sheet: one list of rules for equilibria, single models and motions.
+//! Warnings about the states of a sheet: one list of rules for equilibria, single models and motions.
 
 use nalgebra::Vector4;
 
@@ -18,7 +18,7 @@ use crate::results::{Finding, Found, Stretches, locking, small_strain};
 use crate::solve::State;
 use crate::units::number;
 
-/// The models of a sheet that are looked at.
+/// The models of a sheet that the rules examine.
 #[derive(Clone, Copy)]
 pub struct Examined<'a> {
     /// The sheet.
@@ -36,7 +36,7 @@ pub struct Examined<'a> {
 /// A rule by its name.
 type Rule = (&'static str, fn(Examined) -> Option<Found>);
 
-/// The rules by their names, in the order in which their findings are told.
+/// The rules by their names, in the order of their findings.
 const RULES: [Rule; 14] = [
     ("lattice-poisson-ratio", lattice),
     ("locking", locking_cells),
@@ -62,22 +62,18 @@ pub fn findings(examined: Examined) -> Vec<Finding> {
         .collect()
 }
 
-/// What the states of one model show of a single equilibrium, which was found outside of a study: `at` is its load factor or stretch.
+/// The findings about one equilibrium of finite elements that was found outside of a study; `at` is its load factor or stretch.
 pub fn findings_of_state(
     specimen: &Specimen,
-    kind: ModelKind,
     (mesh, displacement): (&Mesh, &[f64]),
     at: f64,
 ) -> Vec<Finding> {
     let state = ModelState {
         at,
         displacement,
-        velocity: None,
-        past: Vec::new(),
-        viscous: None,
-        groups: &[],
-        expected: None,
+        ..ModelState::default()
     };
+    let kind = ModelKind::FiniteElement;
     let series = ModelSeries {
         kind,
         style: kind.style(),
@@ -94,7 +90,7 @@ pub fn findings_of_state(
 }
 
 /// A finding without a remedy.
-fn alone(message: String) -> Found {
+fn without_remedy(message: String) -> Found {
     (message, String::new())
 }
 
@@ -110,7 +106,7 @@ impl<'a> Examined<'a> {
         self.specimen.cards().in_turn(self.best()?.mesh, rule)
     }
 
-    /// Its mesh and the study's problem, of equilibria.
+    /// The study's problem and the best model's mesh; `None` in a motion.
     fn problem(&self) -> Option<(&'a BoundaryProblem, &'a Mesh)> {
         let problem = (&self.specimen.problem, self.best()?.mesh);
         (!self.is_motion).then_some(problem)
@@ -145,7 +141,7 @@ fn lattice(examined: Examined) -> Option<Found> {
             Some(_) => mass_spring::warning_of_plate(&*card.law),
             None => mass_spring::warning(&*card.law),
         };
-        warning.map(alone)
+        warning.map(without_remedy)
     })
 }
 
@@ -186,7 +182,7 @@ fn relaxation(examined: Examined) -> Option<Found> {
     }
     examined.of_cards(|card, _| {
         let message = card.viscosity.left_out()?;
-        Some(alone(format!("{message}.")))
+        Some(without_remedy(format!("{message}.")))
     })
 }
 
@@ -253,7 +249,7 @@ fn several(examined: Examined) -> Option<Found> {
     });
     let states: Vec<String> = states.collect();
     (!states.is_empty()).then(|| {
-        alone(format!(
+        without_remedy(format!(
             "the tangent was not positive definite, or the body snapped through, on the way to {}: there are several equilibria, and which one is \
              found depends on mesh and load steps",
             states.join(", ")
@@ -268,7 +264,7 @@ fn overlap(examined: Examined) -> Option<Found> {
     examined.models?;
     let ([x, y], load) =
         examined.first(|model, state| model.mesh.overlap(state.displacement, DEEP))?;
-    Some(alone(format!(
+    Some(without_remedy(format!(
         "the sheet passes through itself at {load}, near ({}, {}) mm at rest: parts of the boundary have no contact with each other, and the \
          state is impossible where they overlap",
         number(x),
@@ -283,7 +279,7 @@ fn compression(examined: Examined) -> Option<Found> {
         let wrinkling = Wrinkling::new(state.strained(sheet), model.mesh, state.displacement);
         (examined.load(state.at), wrinkling)
     });
-    wrinkling::warning(states).map(alone)
+    wrinkling::warning(states).map(without_remedy)
 }
 
 /// The first state with strains or rotations that are too large for the law.
@@ -309,7 +305,7 @@ fn beyond_card(examined: Examined) -> Option<Found> {
         });
         let (at, worst) = stretches.max_by(|(_, a), (_, b)| a.share.total_cmp(&b.share))?;
         let reason = worst.reason(card, &format!(" at {}", examined.load(at)))?;
-        Some(alone(format!("{reason}.")))
+        Some(without_remedy(format!("{reason}.")))
     })
 }
 
@@ -328,7 +324,7 @@ fn unstable(examined: Examined) -> Option<Found> {
             Some((mesh.describe_cell(*cell), model.style.name))
         };
         let ((cell, model), load) = examined.first(unstable_cell)?;
-        Some(alone(format!(
+        Some(without_remedy(format!(
             "the material of the card `{}` is not stable (Drucker) in {cell} of the {model} at {load}.",
             card.name
         )))
@@ -343,11 +339,11 @@ fn unbalanced(examined: Examined) -> Option<Found> {
     let worst = forces::worst_balance(&balances)?;
     (worst.is_nan() || worst > UNBALANCED).then(|| {
         let balance = forces::balance_words(&balances);
-        alone(format!("forces or moments do not balance. {balance}"))
+        without_remedy(format!("forces or moments do not balance. {balance}"))
     })
 }
 
 /// Moments that no requirement judges.
 fn unjudged_moment(examined: Examined) -> Option<Found> {
-    forces::unjudged_moment(examined.specimen, examined.models?).map(alone)
+    forces::unjudged_moment(examined.specimen, examined.models?).map(without_remedy)
 }

@@ -1,4 +1,4 @@
-//! One model of a study alone.
+//! The models of a study, and the results of one of them alone.
 
 use crate::corrector::Multipliers;
 use crate::error::Error;
@@ -27,25 +27,7 @@ impl ModelKind {
         ("corrected", Self::Corrected),
         ("finite-element", Self::FiniteElement),
     ];
-}
 
-/// What one model finds without the others.
-#[derive(Debug)]
-pub struct OneModel {
-    /// Its equilibria, one at each load factor or stretch that it reaches.
-    pub solution: Solution,
-    /// The force that is measured in each of them, in N: that on the moving grip of a plate, or on the measured group of a
-    /// specimen along the axis of its larger component.
-    pub forces: Vec<f64>,
-    /// The multipliers of the correction of each, condition after condition; none where nothing is told of them.
-    pub multipliers: Vec<Vec<Multipliers>>,
-    /// Why it has no equilibrium at the others.
-    pub ends: Vec<Error>,
-    /// What deserves attention in the states.
-    pub warnings: Vec<Finding>,
-}
-
-impl ModelKind {
     /// Its name and colour.
     pub fn style(self) -> ModelStyle {
         match self {
@@ -54,4 +36,20 @@ impl ModelKind {
             Self::FiniteElement => FINITE_ELEMENTS,
         }
     }
+}
+
+/// The results of one model without the others.
+#[derive(Debug)]
+pub struct OneModel {
+    /// Its equilibria, one at each load factor or stretch that it reaches.
+    pub solution: Solution,
+    /// The force that is measured in each of them, in N: that on the moving grip of a plate, or on the measured group of a
+    /// specimen along the axis of its larger component.
+    pub forces: Vec<f64>,
+    /// The multipliers of the correction of each, condition after condition; empty where they were not computed.
+    pub multipliers: Vec<Vec<Multipliers>>,
+    /// Why it has no equilibrium at the others.
+    pub ends: Vec<Error>,
+    /// What deserves attention in the states.
+    pub warnings: Vec<Finding>,
 }

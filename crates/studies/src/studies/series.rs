@@ -40,6 +40,7 @@ pub struct ModelSeries<'a> {
 }
 
 /// One state of a model.
+#[derive(Default)]
 pub struct ModelState<'a> {
     /// The load factor or the stretch, or the time in s.
     pub at: f64,
@@ -63,11 +64,10 @@ impl<'a> ModelSeries<'a> {
         let state = |(step, state): (usize, &'a State)| ModelState {
             at: state.factor,
             displacement: &state.displacement,
-            velocity: None,
             past: solution.past(step),
-            viscous: None,
             groups: solution.groups(step).unwrap_or_default(),
             expected: expected.get(step).map(Vec::as_slice),
+            ..ModelState::default()
         };
         Self {
             kind,
@@ -77,7 +77,7 @@ impl<'a> ModelSeries<'a> {
         }
     }
 
-    /// What its stresses at a step follow from.
+    /// Its fields at a step, which determine the stresses.
     pub fn deformed(&self, step: usize) -> Option<Deformed<'a>> {
         let state = self.states.get(step)?;
         let before = state.past.iter().copied();
@@ -108,8 +108,8 @@ impl<'a> ModelSeries<'a> {
             .with(difference)
     }
 
-    /// The begin of a report: what happens at the groups of some names at some steps, each with its words, and the largest values at one
-    /// step; `model` and `along` are what the model and its steps are called.
+    /// The beginning of a report: the states of some groups at some steps, each with its description, and the largest values at one step;
+    /// `model` and `along` are the names of the model and of the parameter along its steps.
     pub fn headline(
         &self,
         specimen: &Specimen,
@@ -145,7 +145,7 @@ impl<'a> ModelSeries<'a> {
 }
 
 impl ModelState<'_> {
-    /// What its stresses follow from, of those of the sheet at rest.
+    /// A sheet with the history and the viscous stresses of this state.
     pub fn strained<'b>(&'b self, sheet: Sheet<'b>) -> Sheet<'b> {
         Sheet {
             past: &self.past,

@@ -15,8 +15,8 @@ use gelbench_mechanics::material::softened_law::check_memory;
 use gelbench_mechanics::problem::sheet_energy::SheetEnergy;
 use gelbench_mechanics::solve::{Assembly, Remembering};
 use gelbench_report::results::Finding;
+use gelbench_studies::studies::findings_of_state;
 use gelbench_studies::studies::specimen::{self, Along, Specimen};
-use gelbench_studies::studies::{ModelKind, findings_of_state};
 
 use super::path;
 use super::plate::Quick;
@@ -184,7 +184,7 @@ impl Bodies {
             Along::LoadFactor => 1.0,
         };
         let state = (&body.mesh, &body.displacement[..]);
-        findings_of_state(&self.specimen, ModelKind::FiniteElement, state, at)
+        findings_of_state(&self.specimen, state, at)
     }
 
     fn make(&self, model: Model) -> Result<Body, Error> {

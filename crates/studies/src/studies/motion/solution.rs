@@ -144,10 +144,10 @@ impl ModelMotion {
             at: times[instant],
             displacement: &now.displacement,
             velocity: Some(&now.velocity),
-            past: Vec::new(),
             viscous: self.viscous.get(instant),
             groups: std::slice::from_ref(&self.groups[instant]),
             expected: self.expected.get(instant).map(Vec::as_slice),
+            ..ModelState::default()
         });
         ModelSeries {
             kind: self.kind,
@@ -164,7 +164,7 @@ impl ModelMotion {
 }
 
 impl MovingSheet {
-    /// Computes the motion of one model; `progress` is told the instants that are reached.
+    /// Computes the motion of one model; the instants that are reached are reported to `progress`.
     pub fn moved(
         &self,
         kind: ModelKind,

@@ -1,7 +1,6 @@
 //! The study file of a specimen.
 
 use std::path::Path;
-use std::sync::Arc;
 
 use super::measured_curve::{check_extensometer, read_measured_curve};
 use super::problem::{Method, Outline, Refinement, Specimen};
@@ -11,7 +10,7 @@ use crate::mesh::{CellShape, Mesh, MeshReading, import};
 use crate::problem::BoundaryProblem;
 use crate::solve::LinearSolver;
 use crate::studies::pictures::Pictures;
-use crate::studies::regions::divided;
+use crate::studies::regions::{SheetCards, divided};
 use crate::studies::sections::{Tolerances, check_thickness, read_models, refuse_memory};
 use crate::units::Dimension;
 
@@ -21,13 +20,13 @@ mod outline;
 mod path;
 mod supports;
 
-use materials::{Cards, Materials};
+use materials::Materials;
 pub(crate) use measurements::read_measurements;
 use outline::{Import, SHAPES, read_outline, usual_mesh};
 use path::{check_measured, read_path};
 use supports::SupportsAndLoads;
 
-/// What a study must say of the specimen; cells and lattice have defaults.
+/// The keys that a study must state of the specimen; cells and lattice have defaults.
 const MEASURES: &[&str] = &[
     "shape",
     "thickness",
@@ -129,7 +128,7 @@ pub fn read_moving(
     Some(specimen)
 }
 
-/// What a study says of a sheet of any shape: its outline, its supports and loads.
+/// The parts of a study that define a sheet of any shape: its outline, its supports and loads.
 struct StatedSheet<'a> {
     section: Section<'a>,
     name: Option<&'static str>,
@@ -188,13 +187,16 @@ impl<'a> StatedSheet<'a> {
         check_elements(root, &outline, &mesh);
         given.check_groups(&mesh);
         check_measured(path, group, &mesh);
-        let Cards { card, regions } = materials.on(root, &outline, &mesh)?;
-        let laws = regions.iter();
-        let laws = laws.map(|(region, card)| (region.clone(), Arc::clone(&card.law)));
+        let (card, regions) = materials.on(root, &outline, &mesh)?;
+        let cards = SheetCards {
+            card: &card,
+            regions: &regions,
+        };
+        let (law, laws_of_regions) = cards.laws();
         let problem = BoundaryProblem {
             thickness,
-            law: Arc::clone(&card.law),
-            regions: laws.collect(),
+            law,
+            regions: laws_of_regions,
             supports: given.supports(),
             loads: given.loads(),
         };
@@ -270,7 +272,7 @@ fn warn_of_parts(section: &Section, specimen: &Specimen, mesh: &Mesh) {
 /// Whether the measures could be read, and fit together; what does not is recorded.
 fn fits(section: &Section, outline: &Outline) -> bool {
     if !outline.is_complete() {
-        return false; // told already
+        return false; // A missing measure was reported when it was read.
     }
     let fits = outline.check();
     if let Err(misfit) = &fits {

@@ -12,7 +12,7 @@ use crate::studies::regions::{fault_of, regions_of};
 /// The key of the region that a card is for.
 const ON: &str = "on";
 
-/// The cards of a study, with their places in it.
+/// The cards of a study, with their sections.
 pub struct Materials<'a> {
     entries: Vec<Entry<'a>>,
 }
@@ -24,13 +24,8 @@ struct Entry<'a> {
     card: Option<Card>,
 }
 
-/// The cards of a specimen.
-pub struct Cards {
-    /// Of all cells that belong to no region.
-    pub card: Card,
-    /// Of the regions by their names.
-    pub regions: Vec<(String, Card)>,
-}
+/// The card of all cells that belong to no region, and the cards of the regions by their names.
+pub type Cards = (Card, Vec<(String, Card)>);
 
 impl<'a> Materials<'a> {
     /// Reads `[material]`, or each `[[material]]`.
@@ -150,7 +145,7 @@ impl<'a> Materials<'a> {
         }
         let first = regions.first().map(|(_, card)| card.clone());
         let card = rest.or(first)?;
-        Some(Cards { card, regions })
+        Some((card, regions))
     }
 }
 
@@ -158,24 +153,17 @@ impl Entry<'_> {
     /// What is wrong with the region of an entry that follows others, and the remedy.
     fn fault(&self, before: &[Self], outline: &Outline, mesh: &Mesh) -> Option<(String, String)> {
         let fault = |message: String, hint: &str| Some((message, hint.to_owned()));
-        if let Some((one, other)) = before
-            .first()
-            .and_then(|material| material.other_state(self))
-        {
+        let first = before.first();
+        if let Some((one, other)) = first.and_then(|first| first.other_state(self)) {
             let message = format!("this card is in {one}, and the first one in {other}");
-            return fault(
-                message,
-                "a sheet has one state: write the same `sheet` for all cards",
-            );
+            let hint = "a sheet has one state: write the same `sheet` for all cards";
+            return fault(message, hint);
         }
         let Some(region) = &self.on else {
             let is_second = before.iter().any(|material| material.on.is_none());
             let message = "is missing: another card is for all remaining cells already";
-            let message = is_second.then(|| message.to_owned())?;
-            return fault(
-                message,
-                "name the region that this card is for, such as on = \"inclusion\"",
-            );
+            let hint = "name the region that this card is for, such as on = \"inclusion\"";
+            return is_second.then(|| (message.to_owned(), hint.to_owned()));
         };
         if !matches!(outline, Outline::File { .. }) {
             let message = "the cells of a built-in shape have no names".to_owned();

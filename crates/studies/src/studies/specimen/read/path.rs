@@ -1,8 +1,8 @@
 //! The load factors of a study, and the group that is measured.
 
+use super::supports::check_group;
 use crate::budget::Need;
 use crate::document::{Bound, Section};
-use crate::error::suggestion;
 use crate::mesh::Mesh;
 
 /// The load factors and the measured group.
@@ -62,13 +62,7 @@ fn read_factors(path: &Section, remembers: bool) -> Vec<f64> {
 
 /// Records a measured group that the specimen does not have.
 pub fn check_measured(path: &Section, group: &str, mesh: &Mesh) {
-    if path.has("measured_group") && !mesh.groups().contains_key(group) {
-        let known: Vec<_> = mesh.groups().keys().map(String::as_str).collect();
-        let message = format!("the specimen has no group `{group}`");
-        path.fault(
-            "measured_group",
-            &message,
-            &suggestion(group, &known, "its groups are"),
-        );
+    if path.has("measured_group") {
+        check_group(path, "measured_group", group, mesh);
     }
 }

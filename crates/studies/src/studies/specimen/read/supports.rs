@@ -13,7 +13,7 @@ struct Entry<'a, T> {
     condition: T,
 }
 
-/// The supports and loads of a study, with their places in it.
+/// The supports and loads of a study, with their sections.
 pub struct SupportsAndLoads<'a> {
     supports: Vec<Entry<'a, Support>>,
     loads: Vec<Entry<'a, Load>>,
@@ -48,28 +48,19 @@ impl<'a> SupportsAndLoads<'a> {
         pairs(&self.loads)
     }
 
+    /// The groups of all entries, with their sections.
+    fn groups(&self) -> impl Iterator<Item = (&Section<'a>, &str)> {
+        let supports = self.supports.iter();
+        let supports = supports.map(|entry| (&entry.section, &*entry.group));
+        let loads = self.loads.iter();
+        supports.chain(loads.map(|entry| (&entry.section, &*entry.group)))
+    }
+
     /// Records groups that the specimen does not have.
     pub fn check_groups(&self, mesh: &Mesh) {
-        let supports = self
-            .supports
-            .iter()
-            .map(|entry| (&entry.section, &entry.group));
-        let loads = self
-            .loads
-            .iter()
-            .map(|entry| (&entry.section, &entry.group));
-        // That one is missing is told already.
-        let stated = supports.chain(loads).filter(|(_, group)| !group.is_empty());
-        for (section, group) in stated {
-            let known: Vec<_> = mesh.groups().keys().map(String::as_str).collect();
-            if !known.contains(&group.as_str()) {
-                let message = format!("the specimen has no group `{group}`");
-                section.fault(
-                    "group",
-                    &message,
-                    &suggestion(group, &known, "its groups are"),
-                );
-            }
+        // A missing name was reported when it was read.
+        for (section, group) in self.groups().filter(|(_, group)| !group.is_empty()) {
+            check_group(section, "group", group, mesh);
         }
     }
 
@@ -103,15 +94,13 @@ impl<'a> SupportsAndLoads<'a> {
 
     /// Records what keeps the problem from being solved on a mesh, at the entry that each fault names.
     pub fn check(&self, root: &Section, problem: &BoundaryProblem, mesh: &Mesh) {
-        let known = |group: &str| mesh.groups().contains_key(group);
-        let supports = self.supports.iter().map(|entry| &entry.group);
-        let mut groups = supports.chain(self.loads.iter().map(|entry| &entry.group));
+        let mut groups = self.groups();
         if self.supports.is_empty()
             || !self.complete
             || !problem.thickness.is_finite()
-            || !groups.all(|group| known(group))
+            || !groups.all(|(_, group)| mesh.groups().contains_key(group))
         {
-            return; // told already
+            return; // These faults were reported when the study was read.
         }
         let unstrained = |()| problem.unstrained(mesh).map_err(|fault| vec![fault]);
         let checked = problem.check(mesh).and_then(unstrained);
@@ -123,7 +112,7 @@ impl<'a> SupportsAndLoads<'a> {
                 _ => named(&self.supports, "support", &fault.message),
             };
             match entry {
-                // Gravity and point forces move a sheet in time: its reader knows them.
+                // Gravity and point forces, too, move a sheet in time: the reader of motions warns.
                 _ if fault.severity == Severity::Warning && root.has("time") => {}
                 _ if fault.severity == Severity::Warning => {
                     root.warning("support", &fault.message, &hint);
@@ -132,6 +121,15 @@ impl<'a> SupportsAndLoads<'a> {
                 None => root.fault("support", &fault.message, &hint),
             }
         }
+    }
+}
+
+/// Records a group under `key` that the specimen does not have.
+pub fn check_group(section: &Section, key: &'static str, group: &str, mesh: &Mesh) {
+    if !mesh.groups().contains_key(group) {
+        let known: Vec<_> = mesh.groups().keys().map(String::as_str).collect();
+        let message = format!("the specimen has no group `{group}`");
+        section.fault(key, &message, &suggestion(group, &known, "its groups are"));
     }
 }
 
@@ -193,9 +191,10 @@ fn drive(section: &Section, (displacement, force): (&'static str, &'static str))
         }
         (false, true) => Drive::Force(section.quantity(force, Dimension::Force, Bound::Any)),
         (given, _) => {
-            let message = match given {
-                true => format!("a grip has {displacement} or {force}, and not both"),
-                false => format!("a grip needs either {displacement} or {force}"),
+            let message = if given {
+                format!("a grip has {displacement} or {force}, and not both")
+            } else {
+                format!("a grip needs either {displacement} or {force}")
             };
             let hint = format!(
                 "{displacement} = \"0 mm\" holds it, {force} = \"0 N\" leaves it free to move"
@@ -218,22 +217,22 @@ fn read_centre(section: &Section) -> [f64; 2] {
     })
 }
 
+/// The kinds of supports.
+const SUPPORTS: [&str; 7] = [
+    "clamp",
+    "displacement",
+    "roller",
+    "symmetry",
+    "grip",
+    "rotation",
+    "radial",
+];
+
 fn read_support(section: &Section) -> Option<(String, Support)> {
     let group = section.text("group");
-    let support = match section.choice(
-        "kind",
-        &[
-            ("clamp", 0),
-            ("displacement", 1),
-            ("roller", 2),
-            ("symmetry", 2),
-            ("grip", 3),
-            ("rotation", 4),
-            ("radial", 5),
-        ],
-    )? {
-        0 => Support::Displacement([Some(0.0); 2]),
-        1 => {
+    let support = match section.choice("kind", &SUPPORTS.map(|kind| (kind, kind)))? {
+        "clamp" => Support::Displacement([Some(0.0); 2]),
+        "displacement" => {
             let displacement = ["x", "y"].map(|key| section.stated(key, Section::linear_length));
             if displacement == [None; 2] {
                 section.fault("kind", "needs x or y", "x = \"0 mm\" is a roller along y");
@@ -248,12 +247,14 @@ fn read_support(section: &Section) -> Option<(String, Support)> {
                 Support::LinearDisplacement(displacement)
             }
         }
-        2 => Support::Roller,
-        5 => Support::Radial {
+        "roller" | "symmetry" => Support::Roller,
+        "radial" => Support::Radial {
             centre: read_centre(section),
             displacement: section.quantity("displacement", Dimension::Length, Bound::Any),
         },
-        3 => Support::Grip([("x", "x_force"), ("y", "y_force")].map(|keys| drive(section, keys))),
+        "grip" => {
+            Support::Grip([("x", "x_force"), ("y", "y_force")].map(|keys| drive(section, keys)))
+        }
         _ => {
             let centre = read_centre(section);
             Support::Rotation {
@@ -280,9 +281,10 @@ fn read_load(section: &Section) -> Option<(String, Load)> {
         }
         given.map(Option::unwrap_or_default)
     };
-    let load = match section.choice("kind", &[("traction", 0), ("pressure", 1), ("force", 2)])? {
-        0 => Load::Traction(vector(Dimension::Stress)),
-        1 => Load::Pressure(section.quantity("pressure", Dimension::Stress, Bound::Any)),
+    let kinds = ["traction", "pressure", "force"];
+    let load = match section.choice("kind", &kinds.map(|kind| (kind, kind)))? {
+        "traction" => Load::Traction(vector(Dimension::Stress)),
+        "pressure" => Load::Pressure(section.quantity("pressure", Dimension::Stress, Bound::Any)),
         _ => Load::Force(vector(Dimension::Force)),
     };
     section.unknown_keys();
