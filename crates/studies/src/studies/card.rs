@@ -15,50 +15,16 @@ const KEY: &str = "card";
 /// The key of the plane state.
 const SHEET: &str = "sheet";
 
-/// The card under `card` of a section, looked for relative to `folder`; `None` where it is no card to work
-/// with, which is recorded as a fault.
+/// The card under `card` of a section, looked for relative to `folder`; `None` where a model cannot use it, which is recorded as a fault.
 pub fn read_card(section: &Section<'_>, folder: &Path) -> Option<Card> {
     let name = section.text(KEY);
     // Before the card is loaded, so that a card in fault leaves no other key unread.
     let plane = plane_state(section);
     if name.is_empty() && !section.has(KEY) {
-        return None; // told already
+        return None; // The missing key was reported when it was read.
     }
-    match Card::load(&name, folder) {
-        Ok(card) if card.offset == OffsetTreatment::Keep => {
-            section.fault(
-                KEY,
-                "this card has a stress at rest and cannot be used in a model",
-                "set `offset = \"subtract\"` in the card",
-            );
-            None
-        }
-        Ok(card) if card.law.shear_modulus() <= 0.0 => {
-            section.fault(
-                KEY,
-                &format!(
-                    "this card's law is unstable from rest: its shear modulus is {:.4} MPa",
-                    card.law.shear_modulus()
-                ),
-                "choose another law; see `gelbench materials show`",
-            );
-            None
-        }
-        Ok(card) if !rests(&card) => {
-            section.fault(
-                KEY,
-                "this card's law is unstable from rest: its bulk modulus is negative, so that at zero in-plane strain the sheet has another thickness and a stress",
-                "choose other parameters; for foams the sum of μᵢ (⅓ + βᵢ) must be positive",
-            );
-            None
-        }
-        Ok(card) => {
-            warn_of_volume(section, &card);
-            for warning in card.warnings() {
-                section.warning(KEY, &warning.message, warning.hint.as_deref().unwrap_or(""));
-            }
-            in_plane(section, plane?, card)
-        }
+    let card = match Card::load(&name, folder) {
+        Ok(card) => card,
         Err(Error::Input(faults)) => {
             for fault in faults {
                 match fault.position {
@@ -66,12 +32,43 @@ pub fn read_card(section: &Section<'_>, folder: &Path) -> Option<Card> {
                     None => section.fault(KEY, &fault.message, fault.hint.as_deref().unwrap_or("")),
                 }
             }
-            None
+            return None;
         }
         Err(other) => {
             section.fault(KEY, &other.to_string(), "choose another card");
-            None
+            return None;
         }
+    };
+    if let Some((message, hint)) = unusable(&card) {
+        section.fault(KEY, &message, hint);
+        return None;
+    }
+    warn_of_volume(section, &card);
+    for warning in card.warnings() {
+        section.warning(KEY, &warning.message, warning.hint.as_deref().unwrap_or(""));
+    }
+    let card = card_in_plane(card, plane?);
+    card.map_err(|fault| section.fault(SHEET, &fault.message, fault.hint.as_deref().unwrap_or("")))
+        .ok()
+}
+
+/// Why a model cannot use a card, and the remedy; `None` where it can.
+fn unusable(card: &Card) -> Option<(String, &'static str)> {
+    let modulus = card.law.shear_modulus();
+    if card.offset == OffsetTreatment::Keep {
+        let message = "this card has a stress at rest and cannot be used in a model";
+        let hint = "set `offset = \"subtract\"` in the card";
+        Some((message.to_owned(), hint))
+    } else if modulus <= 0.0 {
+        let message =
+            format!("this card's law is unstable from rest: its shear modulus is {modulus:.4} MPa");
+        Some((message, "choose another law; see `gelbench materials show`"))
+    } else if !rests(card) {
+        let message = "this card's law is unstable from rest: its bulk modulus is negative, so that at zero in-plane strain the sheet has another thickness and a stress";
+        let hint = "choose other parameters; for foams the sum of μᵢ (⅓ + βᵢ) must be positive";
+        Some((message.to_owned(), hint))
+    } else {
+        None
     }
 }
 
@@ -104,22 +101,15 @@ fn warn_of_volume(section: &Section<'_>, card: &Card) {
     );
 }
 
-/// What the section chooses with `sheet`; plane stress where it says nothing.
+/// The plane state under `sheet` of a section; plane stress where it states none.
 fn plane_state(section: &Section<'_>) -> Option<PlaneState> {
     section
         .stated(SHEET, |_, key| section.choice(key, &PlaneState::NAMES))
         .unwrap_or(Some(PlaneState::Stress))
 }
 
-/// The card in the plane state of a section; that it has none is recorded.
-fn in_plane(section: &Section<'_>, plane: PlaneState, card: Card) -> Option<Card> {
-    card_in_plane(card, plane)
-        .map_err(|fault| section.fault(SHEET, &fault.message, fault.hint.as_deref().unwrap_or("")))
-        .ok()
-}
-
-/// The card in a plane state. In plane strain it must change its volume, and as much as displacements alone can say: beyond,
-/// pressures of κ times what rounding and iteration leave of a change of volume hide the stress.
+/// The card in a plane state. In plane strain its volume must be able to change, and its bulk modulus κ is limited: the pressure is κ times the
+/// change of volume, whose rounding and iteration errors would hide the stress.
 ///
 /// # Errors
 /// What the card lacks, and the remedy.

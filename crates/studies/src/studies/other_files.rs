@@ -1,4 +1,4 @@
-//! Files that are no studies, told by what they are and by the command that takes them.
+//! Recognises files that are not studies, and names the command that reads them.
 
 use std::path::Path;
 
@@ -8,7 +8,7 @@ use crate::error::Error;
 /// Refuses the text of a table, a mesh or a field.
 ///
 /// # Errors
-/// [`Error::Input`] with what the file is and what takes it.
+/// [`Error::Input`] with what the file is, and the command that reads it.
 pub fn refuse(path: &Path, text: &str) -> Result<(), Error> {
     let name = path.display();
     let start = text.trim_start_matches('\u{feff}').trim_start();
@@ -22,35 +22,26 @@ pub fn refuse(path: &Path, text: &str) -> Result<(), Error> {
         "*NODE",
     ];
     if meshes.iter().any(|begin| start.starts_with(begin)) {
+        let message = format!("{name} is a mesh or a field on a mesh, not a study");
         let hint = format!(
             "`gelbench correct {name} --material CARD --thickness \"2 mm\"` corrects a field; a study names a mesh with shape = \"mesh\" and file = \"{name}\""
         );
-        return Err(Error::input(
-            format!("{name} is a mesh or a field on a mesh, not a study"),
-            hint,
-        ));
+        return Err(Error::input(message, hint));
     }
-    let statements = || {
-        text.lines()
-            .any(|line| !line.starts_with('#') && line.contains('='))
-    };
-    if statements() {
+    let is_statement = |line: &str| !line.starts_with('#') && line.contains('=');
+    if text.lines().any(is_statement) {
         return Ok(());
     }
-    match Table::parse(&name.to_string(), text) {
-        Ok(table) => {
-            let hint = taker(&table, &name.to_string());
-            Err(Error::input(
-                format!("{name} is a table of numbers, not a study"),
-                hint,
-            ))
-        }
-        Err(_) => Ok(()),
-    }
+    let name = name.to_string();
+    let Ok(table) = Table::parse(&name, text) else {
+        return Ok(());
+    };
+    let message = format!("{name} is a table of numbers, not a study");
+    Err(Error::input(message, command_for(&table, &name)))
 }
 
-/// The command that takes a table with these columns.
-fn taker(table: &Table, name: &str) -> String {
+/// The command that reads a table with these columns.
+fn command_for(table: &Table, name: &str) -> String {
     let has = |words: &[&str]| {
         let mut columns = table.columns.iter();
         columns.any(|column| words.iter().any(|word| column.name.starts_with(word)))
@@ -78,7 +69,7 @@ fn taker(table: &Table, name: &str) -> String {
     }
 }
 
-/// What a TOML file without a `kind` is, if it is no study, and what takes it.
+/// What a TOML file without a `kind` is, if it is no study, and the remedy.
 pub fn recognised(root: &Section<'_>, file: &str) -> Option<(&'static str, String)> {
     let any = |keys: &[&'static str]| keys.iter().any(|key| root.has(key));
     if any(&["law", "parameters"]) && !any(&["plate", "load", "specimen"]) {

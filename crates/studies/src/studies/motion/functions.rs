@@ -1,4 +1,4 @@
-//! Functions that a study of motion states: the load factor in time, stiffness and damping of springs.
+//! Functions that a study of motion states: the load factor in time, the stiffness and the damping of springs.
 
 use super::problem::Drive;
 use crate::document::{Bound, Section};
@@ -15,33 +15,18 @@ pub const STRETCHES: Bound = Bound::Within(LEAST, 10.0);
 /// The least of them.
 const LEAST: f64 = -0.5;
 
-#[derive(Clone, Copy)]
-enum Course {
-    Hold,
-    Release,
-    Ramp,
-    Sine,
-    Table,
-}
-
 /// The load factor in time from that at the start: of a plate the stretch of its right grip, under keys of its own.
 pub fn read_drive(section: &Section, start: f64, along: Along) -> Option<Drive> {
-    let kinds = [
-        ("hold", Course::Hold),
-        ("release", Course::Release),
-        ("ramp", Course::Ramp),
-        ("sine", Course::Sine),
-        ("table", Course::Table),
-    ];
+    let kinds = ["hold", "release", "ramp", "sine", "table"].map(|kind| (kind, kind));
     let instant = |key| section.quantity(key, Dimension::Time, Bound::NonNegative);
     let mut release = None;
     let factor = match section.choice("motion", &kinds)? {
-        Course::Hold => TimeFunction::Constant(start),
-        Course::Release => {
+        "hold" => TimeFunction::Constant(start),
+        "release" => {
             release = Some(instant("time"));
             TimeFunction::Constant(start)
         }
-        Course::Ramp => {
+        "ramp" => {
             let (begin, end) = (instant("begin"), instant("end"));
             let to = match along {
                 Along::Stretch => section.stretch("to", STRETCHES),
@@ -53,12 +38,12 @@ pub fn read_drive(section: &Section, start: f64, along: Along) -> Option<Drive> 
             }
             TimeFunction::Table(vec![[begin, start], [end, to]])
         }
-        Course::Sine => TimeFunction::Sine {
+        "sine" => TimeFunction::Sine {
             mean: start,
             amplitude: read_amplitude(section, start, along),
             frequency: section.quantity("frequency", Dimension::Frequency, Bound::Positive),
         },
-        Course::Table => TimeFunction::Table(read_table(section, start, along)?),
+        _ => TimeFunction::Table(read_table(section, start, along)?),
     };
     Some(Drive { factor, release })
 }
@@ -153,53 +138,31 @@ fn ascending(
         );
         return None;
     }
-    Some(
-        times
-            .into_iter()
-            .zip(values)
-            .map(|(t, value)| [t, value])
-            .collect(),
-    )
-}
-
-#[derive(Clone, Copy)]
-enum Kind {
-    Constant,
-    Polynomial,
-    Table,
+    let points = times.into_iter().zip(values);
+    Some(points.map(|(t, value)| [t, value]).collect())
 }
 
 /// A function of one variable.
 fn read_function(section: &Section, dimension: Dimension) -> Option<ScalarFunction> {
-    let kinds = [
-        ("constant", Kind::Constant),
-        ("polynomial", Kind::Polynomial),
-        ("table", Kind::Table),
-    ];
+    let kinds = ["constant", "polynomial", "table"].map(|kind| (kind, kind));
     Some(match section.choice("kind", &kinds)? {
-        Kind::Constant => {
+        "constant" => {
             let value = section.quantity("value", dimension, Bound::NonNegative);
             ScalarFunction::constant(value)
         }
-        Kind::Polynomial => {
+        "polynomial" => {
             let coefficients = section.quantities("coefficients", dimension, Bound::Any);
             ScalarFunction::Polynomial(coefficients)
         }
-        Kind::Table => {
+        _ => {
             let at = section.multiples("at", Bound::Any, f64::INFINITY);
             let values = section.quantities("values", dimension, Bound::NonNegative);
             let points = ascending(section, "at", at, values)?;
-            match ScalarFunction::table(points) {
-                Ok(table) => table,
-                Err(reason) => {
-                    section.fault(
-                        "at",
-                        &reason.to_string(),
-                        "give two or more ascending points",
-                    );
-                    return None;
-                }
-            }
+            let table = ScalarFunction::table(points).map_err(|reason| {
+                let hint = "give two or more ascending points";
+                section.fault("at", &reason.to_string(), hint);
+            });
+            table.ok()?
         }
     })
 }

@@ -3,11 +3,11 @@
 use std::path::Path;
 
 use super::functions::{STRETCHES, rates, reached, read_damping, read_drive, read_stiffness};
-use super::problem::{Drive, MovingSheet, Tolerances};
+use super::problem::{Drive, MovingSheet, PointForce, Tolerances};
 use super::timing::{check_times, drive_section};
 use crate::budget::Need;
 use crate::document::{Bound, Section};
-use crate::dynamics::{Integrator, Step, TimeSettings};
+use crate::dynamics::{Integrator, Step, TimeFunction, TimeSettings};
 use crate::mass_spring::{DashpotLaw, LatticeSettings, SpringLaw};
 use crate::material::Card;
 use crate::material::card::read_viscosity;
@@ -16,43 +16,28 @@ use crate::material::softened_law::NO_SOFTENING_ADVICE;
 use crate::material::viscosity::ViscousMaterial;
 use crate::studies::card::read_card;
 use crate::studies::pictures::Pictures;
-use crate::studies::points::read_probes;
+use crate::studies::points::{Region, read_point, read_probes, tables};
 use crate::studies::sections;
 use crate::studies::specimen::{self, Along, Specimen};
-use crate::units::Dimension;
-use crate::units::number;
+use crate::units::{Dimension, number};
 
 mod plate;
-mod points;
 
 use plate::read_plate;
-use points::read_forces;
-
-/// The sheet's material in motion.
-struct Material {
-    card: Option<Card>,
-    density: f64,
-    viscosity: ViscousMaterial,
-}
-
-/// The springs and dashpots of the lattice, and its option for plates.
-struct Lattice {
-    settings: LatticeSettings,
-    springs: Option<SpringLaw>,
-    dashpots: Option<DashpotLaw>,
-}
 
 /// Reads a study; `None` where it has faults, which are recorded.
 pub fn read(root: &Section, folder: &Path) -> Option<MovingSheet> {
     let section = root.section("material");
-    let material = read_material(&section.requiring(&["card", "density"]), folder);
+    let (card, density, viscosity) =
+        read_material(&section.requiring(&["card", "density"]), folder);
     let along = if root.is_of("specimen") {
         Along::LoadFactor
     } else {
         Along::Stretch
     };
-    let lattice = read_lattice(&root.section("mass_spring"), &material.viscosity, along);
-    let card = material.card.as_ref();
+    let (lattice, springs, dashpots) =
+        read_lattice(&root.section("mass_spring"), &viscosity, along);
+    let card = card.as_ref();
     let start = read_start(root, card, along);
     let course =
         root.section(drive_section(along))
@@ -61,7 +46,7 @@ pub fn read(root: &Section, folder: &Path) -> Option<MovingSheet> {
     let specimen = match along {
         Along::Stretch => {
             check_reached(&course, start, card.zip(drive.as_ref()));
-            read_plate(root, card, lattice.settings)
+            read_plate(root, card, lattice)
         }
         Along::LoadFactor => specimen::read_moving(root, folder, card, &course),
     };
@@ -71,17 +56,13 @@ pub fn read(root: &Section, folder: &Path) -> Option<MovingSheet> {
         (outline.lattice(), outline.bounding_box())
     });
     let gravity = read_gravity(&root.section("gravity"));
-    let forces = read_forces(root, region.as_ref());
+    let forces = tables(root, "force", |section| {
+        read_force(section, region.as_ref())
+    });
     let in_time = root.section("time").requiring(&["duration"]);
     let time = read_time(&in_time);
     let motion = time.as_ref().zip(drive.as_ref());
-    check_times(
-        root,
-        &in_time,
-        (motion, along),
-        &material.viscosity,
-        &forces,
-    );
+    check_times(root, &in_time, (motion, along), &viscosity, &forces);
     let is_corrected = read_corrector(&root.section("corrector"));
     let probes = read_probes(root, region.as_ref());
     let tolerances = read_tolerances(&root.section("tolerances"), drive.as_ref());
@@ -94,14 +75,14 @@ pub fn read(root: &Section, folder: &Path) -> Option<MovingSheet> {
             pictures,
             ..specimen?
         },
-        density: material.density,
-        viscosity: material.viscosity,
+        density,
+        viscosity,
         drive: drive?,
         gravity,
         forces,
         time: time?,
-        springs: lattice.springs?,
-        dashpots: lattice.dashpots?,
+        springs: springs?,
+        dashpots: dashpots?,
         is_corrected,
         probes,
         tolerances,
@@ -129,15 +110,16 @@ fn affords(in_time: &Section, sheet: &MovingSheet) -> bool {
     in_time.affords("step", of_steps, FEWER_STEPS) && in_time.affords("interval", others, SMALLER)
 }
 
-/// What makes a motion smaller.
+/// Hints for motions that are too large.
 const FEWER_STEPS: &str = "take a shorter duration, longer steps, or generalised-α; a short automatic step comes from small \
                            cells, little density or a stiff material";
 const SMALLER: &str = "take a shorter duration, longer intervals or fewer cells";
 
-/// Densities in t/mm³ that soft materials have.
+/// Plausible densities of soft materials in t/mm³.
 const LIKELY_DENSITY: std::ops::RangeInclusive<f64> = 1e-10..=1e-8;
 
-fn read_material(section: &Section, folder: &Path) -> Material {
+/// The card, the density in t/mm³ and the viscous part of the sheet's material.
+fn read_material(section: &Section, folder: &Path) -> (Option<Card>, f64, ViscousMaterial) {
     let card = read_card(section, folder);
     let card_density = card.as_ref().and_then(|card| card.density);
     let density = match card_density {
@@ -186,11 +168,7 @@ fn read_material(section: &Section, folder: &Path) -> Material {
         section.fault("card", message, NO_SOFTENING_ADVICE);
     }
     section.unknown_keys();
-    Material {
-        card,
-        density,
-        viscosity,
-    }
+    (card, density, viscosity)
 }
 
 /// The load factor, or stretch, at the start.
@@ -256,6 +234,25 @@ fn warn_of_rest(root: &Section, start: f64, sheet: &MovingSheet) {
     root.warning(drive_section(sheet.specimen.along), message, hint);
 }
 
+/// A point force: constant, or growing from `begin` to `end`.
+fn read_force(section: &Section, region: Option<&Region>) -> PointForce {
+    let force = ["x", "y"].map(|axis| section.quantity(axis, Dimension::Force, Bound::Any));
+    let time = if section.has("begin") || section.has("end") {
+        let begin = section.optional_quantity("begin", Dimension::Time, Bound::NonNegative);
+        let begin = begin.unwrap_or(0.0);
+        let end = section.quantity("end", Dimension::Time, Bound::NonNegative);
+        if end <= begin {
+            section.fault("end", "must be after the begin", "give a later time");
+        }
+        TimeFunction::Ramp { begin, end }
+    } else {
+        TimeFunction::Constant(1.0)
+    };
+    let at = read_point(section, "at", region);
+    section.unknown_keys();
+    PointForce { at, force, time }
+}
+
 fn read_gravity(section: &Section) -> [f64; 2] {
     let gravity =
         ["x", "y"].map(|axis| section.quantity(axis, Dimension::Acceleration, Bound::Any));
@@ -263,25 +260,28 @@ fn read_gravity(section: &Section) -> [f64; 2] {
     gravity
 }
 
-fn read_lattice(section: &Section, viscosity: &ViscousMaterial, along: Along) -> Lattice {
-    let lattice = Lattice {
-        settings: LatticeSettings {
-            // Only cells of a plate have area terms.
-            area_term: along == Along::Stretch && section.flag("area_term"),
-        },
-        springs: if section.has("stiffness") {
-            read_stiffness(&section.section("stiffness"))
-        } else {
-            Some(SpringLaw::Material)
-        },
-        dashpots: if section.has("damping") {
-            read_damping(&section.section("damping"))
-        } else {
-            Some(DashpotLaw::Material(viscosity.clone()))
-        },
+/// The option of a plate's lattice, its springs and its dashpots.
+fn read_lattice(
+    section: &Section,
+    viscosity: &ViscousMaterial,
+    along: Along,
+) -> (LatticeSettings, Option<SpringLaw>, Option<DashpotLaw>) {
+    let settings = LatticeSettings {
+        // Only cells of a plate have area terms.
+        area_term: along == Along::Stretch && section.flag("area_term"),
+    };
+    let springs = if section.has("stiffness") {
+        read_stiffness(&section.section("stiffness"))
+    } else {
+        Some(SpringLaw::Material)
+    };
+    let dashpots = if section.has("damping") {
+        read_damping(&section.section("damping"))
+    } else {
+        Some(DashpotLaw::Material(viscosity.clone()))
     };
     section.unknown_keys();
-    lattice
+    (settings, springs, dashpots)
 }
 
 /// What a driven motion has to reach where the study does not state it, in %: a support that is driven imposes most of the displacement and of the
