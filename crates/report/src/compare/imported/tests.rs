@@ -14,8 +14,8 @@ fn field([x, y]: [f64; 2]) -> [f64; 2] {
     [0.1 * x + 0.02 * y, -0.05 * y]
 }
 
-fn model(cells: [usize; 2]) -> ModelField {
-    let mesh = Mesh::plate([30.0, 10.0], cells, CellShape::Quad4);
+fn model() -> ModelField {
+    let mesh = Mesh::plate([30.0, 10.0], [6, 2], CellShape::Quad4);
     let displacement = mesh.nodes.iter().flat_map(|node| field(*node)).collect();
     ModelField {
         model: "test",
@@ -34,8 +34,17 @@ fn written(name: &str, text: &str) -> tempfile::TempPath {
 fn refusal(name: &str, text: &str) -> String {
     match ExternalField::read(&written(name, text), &SETTINGS) {
         Err(error) => error.to_string(),
-        Ok(imported) => imported.sites(&model([6, 2]).mesh).unwrap_err().to_string(),
+        Ok(imported) => imported.sites(&model().mesh).unwrap_err().to_string(),
     }
+}
+
+/// The points of a file, and the difference of the model from its field.
+fn compared(name: &str, text: &str, settings: &ImportSettings) -> (Sites, Difference) {
+    let model = model();
+    let imported = ExternalField::read(&written(name, text), settings).unwrap();
+    let sites = imported.sites(&model.mesh).unwrap();
+    let difference = sites.difference(&model).unwrap();
+    (sites, difference)
 }
 
 /// A file as CalculiX writes it for a sheet of 2 × 1 cells of solids: z = ±1, the same displacements above each other.
@@ -103,13 +112,7 @@ fn frd(scale: f64, last_x: &str) -> String {
 
 #[test]
 fn a_result_of_calculix_is_the_mean_over_the_thickness_at_the_load_factor() {
-    let model = model([6, 2]);
-    let imported = ExternalField::read(&written(".frd", &frd(1.0, "")), &SETTINGS).unwrap();
-    let difference = imported
-        .sites(&model.mesh)
-        .unwrap()
-        .difference(&model)
-        .unwrap();
+    let (_, difference) = compared(".frd", &frd(1.0, ""), &SETTINGS);
     assert!(difference.percent < 1e-3, "{difference:?}");
     // The first step is half of it, by its load factor or by its time.
     for (factor, time) in [(0.25, None), (0.5, Some(0.25))] {
@@ -118,12 +121,7 @@ fn a_result_of_calculix_is_the_mean_over_the_thickness_at_the_load_factor() {
             time,
             ..SETTINGS
         };
-        let imported = ExternalField::read(&written(".frd", &frd(1.0, "")), &first).unwrap();
-        let difference = imported
-            .sites(&model.mesh)
-            .unwrap()
-            .difference(&model)
-            .unwrap();
+        let (_, difference) = compared(".frd", &frd(1.0, ""), &first);
         assert!((difference.percent - 100.0).abs() < 1e-3, "{difference:?}");
         assert_eq!(difference.position, [30.0, 10.0]);
         assert!(
@@ -136,12 +134,7 @@ fn a_result_of_calculix_is_the_mean_over_the_thickness_at_the_load_factor() {
         unit: Some(1000.0),
         ..SETTINGS
     };
-    let imported = ExternalField::read(&written(".frd", &frd(1e-3, "")), &metres).unwrap();
-    let difference = imported
-        .sites(&model.mesh)
-        .unwrap()
-        .difference(&model)
-        .unwrap();
+    let (_, difference) = compared(".frd", &frd(1e-3, ""), &metres);
     assert!(difference.percent < 1e-3, "{difference:?}");
 }
 
@@ -151,9 +144,7 @@ fn points_of_a_table_are_compared_where_they_are() {
         let table = format!(
             "stretch,X_cm,Y_cm,{names}\n0.25,1,0.5,9,9\n0.5,1,0.5,1.1,-0.25\n0.5,2,0.5,2.1,-0.45\n"
         );
-        let imported = ExternalField::read(&written(".csv", &table), &SETTINGS).unwrap();
-        let sites = imported.sites(&model([6, 2]).mesh).unwrap();
-        let difference = sites.difference(&model([6, 2])).unwrap();
+        let (_, difference) = compared(".csv", &table, &SETTINGS);
         // Off by 0.2 mm at (20, 5) mm alone.
         assert!((difference.largest - 0.2).abs() < 1e-12 && difference.position == [20.0, 5.0]);
         let size = (1.1_f64 * 1.1 + 0.25 * 0.25 + 2.1 * 2.1 + 0.45 * 0.45).sqrt();
@@ -164,7 +155,7 @@ fn points_of_a_table_are_compared_where_they_are() {
     }
 }
 
-/// Files that are refused: ending, text, and what is told.
+/// Files that are refused: ending, text, and a part of the message.
 fn refused() -> Vec<(&'static str, String, &'static str)> {
     let head = "X_mm,Y_mm,ux_mm,uy_mm\n";
     let sound = || frd(1.0, "");
@@ -271,10 +262,9 @@ fn columns_choose_rows_and_are_passed_over_by_wish() {
         ..SETTINGS
     };
     for lift in ["uz", "uz_mm"] {
-        let imported = ExternalField::read(&written(".csv", table), &ignoring(lift)).unwrap();
-        let sites = imported.sites(&model([6, 2]).mesh).unwrap();
+        let (sites, difference) = compared(".csv", table, &ignoring(lift));
         assert_eq!(sites.positions, [[10.0, 5.0]]);
-        assert!(sites.difference(&model([6, 2])).unwrap().percent < 1e-10);
+        assert!(difference.percent < 1e-10);
     }
     let settings = ignoring("uz");
     let error =
@@ -285,28 +275,15 @@ fn columns_choose_rows_and_are_passed_over_by_wish() {
 #[test]
 fn displacements_in_another_unit_are_told_by_their_magnitude() {
     let table = "X_mm,Y_mm,ux_mm,uy_mm\n10,5,0.0011,-0.00025\n20,5,0.0021,-0.00025\n";
-    let model = model([6, 2]);
-    let difference = |settings: &ImportSettings| {
-        let imported = ExternalField::read(&written(".csv", table), settings).unwrap();
-        imported
-            .sites(&model.mesh)
-            .unwrap()
-            .difference(&model)
-            .unwrap()
-    };
-    assert_eq!(difference(&SETTINGS).other_unit(), Some(1000.0));
+    let (_, difference) = compared(".csv", table, &SETTINGS);
+    assert_eq!(difference.other_unit(), Some(1000.0));
     // In metres as a whole, and labelled mm: --unit corrects the head.
     let metres = "X_mm,Y_mm,ux_mm,uy_mm\n0.01,0.005,0.0011,-0.00025\n0.02,0.005,0.0021,-0.00025\n";
     let settings = ImportSettings {
         unit: Some(1000.0),
         ..SETTINGS
     };
-    let imported = ExternalField::read(&written(".csv", metres), &settings).unwrap();
-    let right = imported
-        .sites(&model.mesh)
-        .unwrap()
-        .difference(&model)
-        .unwrap();
+    let (_, right) = compared(".csv", metres, &settings);
     assert!(
         right.percent < 1e-10 && right.other_unit().is_none(),
         "{right:?}"
@@ -317,11 +294,8 @@ fn displacements_in_another_unit_are_told_by_their_magnitude() {
 fn displacements_of_another_load_factor_are_told() {
     let half = "X_mm,Y_mm,ux_mm,uy_mm\n10,5,0.55,-0.125\n20,5,1.05,-0.125\n25,2,1.27,-0.05\n";
     let other = "X_mm,Y_mm,ux_mm,uy_mm\n10,5,0.55,0.125\n20,5,0.1,-0.9\n25,2,0.5,-0.05\n";
-    let model = model([6, 2]);
     for (table, scaled) in [(half, true), (other, false)] {
-        let imported = ExternalField::read(&written(".csv", table), &SETTINGS).unwrap();
-        let sites = imported.sites(&model.mesh).unwrap();
-        let difference = sites.difference(&model).unwrap();
+        let (_, difference) = compared(".csv", table, &SETTINGS);
         assert_eq!(difference.is_scaled(), scaled, "{difference:?}");
         if scaled {
             assert!((difference.factor - 2.0).abs() < 1e-10 && difference.scaled_percent < 1e-10);
@@ -331,7 +305,6 @@ fn displacements_of_another_load_factor_are_told() {
 
 #[test]
 fn a_motion_of_the_whole_body_is_told_from_a_strain() {
-    let model = model([6, 2]);
     let (turn, offset) = (0.02, [0.3, -0.2]);
     let row = |[x, y]: [f64; 2], moved: bool| {
         let [ux, uy] = field([x, y]);
@@ -353,9 +326,7 @@ fn a_motion_of_the_whole_body_is_told_from_a_strain() {
     for moved in [true, false] {
         let rows = positions.map(|position| row(position, moved)).concat();
         let table = format!("X_mm,Y_mm,ux_mm,uy_mm\n{rows}");
-        let imported = ExternalField::read(&written(".csv", &table), &SETTINGS).unwrap();
-        let sites = imported.sites(&model.mesh).unwrap();
-        let difference = sites.difference(&model).unwrap();
+        let (_, difference) = compared(".csv", &table, &SETTINGS);
         assert!(difference.percent > 2.0);
         assert_eq!(difference.is_shifted(), moved, "{difference:?}");
         if moved {
