@@ -73,10 +73,8 @@ pub fn findings_of_state(
         displacement,
         ..ModelState::default()
     };
-    let kind = ModelKind::FiniteElement;
     let series = ModelSeries {
-        kind,
-        style: kind.style(),
+        kind: ModelKind::FiniteElement,
         mesh,
         states: vec![state],
     };
@@ -160,7 +158,7 @@ fn locking_cells(examined: Examined) -> Option<Found> {
     let models = models.filter(|model| !model.states.is_empty());
     let locking = models.filter_map(|model| {
         let (locks, remedy) = judged(model);
-        locks.then_some((model.style.name, remedy))
+        locks.then_some((model.kind.style().name, remedy))
     });
     let (names, mut remedies): (Vec<&str>, Vec<&str>) = locking.unzip();
     remedies.dedup();
@@ -321,7 +319,7 @@ fn unstable(examined: Examined) -> Option<Found> {
                 !kinematics.is_ok_and(|kinematics| is_stable(&*card.law, &kinematics))
             };
             let cell = cells.iter().find(is_unstable)?;
-            Some((mesh.describe_cell(*cell), model.style.name))
+            Some((mesh.describe_cell(*cell), model.kind.style().name))
         };
         let ((cell, model), load) = examined.first(unstable_cell)?;
         Some(without_remedy(format!(

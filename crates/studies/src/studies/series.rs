@@ -5,7 +5,6 @@ use super::ModelKind;
 use super::specimen::problem::{Outline, Specimen};
 use crate::mesh::{Mesh, Shape};
 use crate::problem::{GroupState, Solution};
-use crate::results::models::ModelStyle;
 use crate::results::{
     Array, Block, Deformed, Figure, Gauge, Grid, Headline, LoadedSheet, Panel, Sheet, Stroke,
     ViscousStress, sheet_figures,
@@ -29,11 +28,7 @@ pub fn larger_axis(vectors: impl Iterator<Item = [f64; 2]>) -> usize {
 
 /// The states of one model.
 pub struct ModelSeries<'a> {
-    /// Which model it is.
     pub kind: ModelKind,
-    /// Its name and colour.
-    pub style: ModelStyle,
-    /// Its mesh.
     pub mesh: &'a Mesh,
     /// Its states, as far as it goes.
     pub states: Vec<ModelState<'a>>,
@@ -71,7 +66,6 @@ impl<'a> ModelSeries<'a> {
         };
         Self {
             kind,
-            style: kind.style(),
             mesh: &solution.mesh,
             states: solution.states.iter().enumerate().map(state).collect(),
         }
@@ -84,7 +78,7 @@ impl<'a> ModelSeries<'a> {
         let fields = before.chain([state.displacement]).collect();
         Some(Deformed {
             viscous: state.viscous.map_or(&[], |stress| &stress.at_nodes),
-            ..Deformed::elastic(self.style.name, self.mesh, fields)
+            ..Deformed::elastic(self.kind.style().name, self.mesh, fields)
         })
     }
 
@@ -92,7 +86,8 @@ impl<'a> ModelSeries<'a> {
     pub fn panel(&self, step: usize, value: impl Fn([f64; 2]) -> f64) -> Option<Panel> {
         let u = self.states.get(step)?.displacement;
         let at_node = |node: usize| value([u[2 * node], u[2 * node + 1]]);
-        Some(Panel::at_nodes(self.style.name, self.mesh, u, &at_node))
+        let name = self.kind.style().name;
+        Some(Panel::at_nodes(name, self.mesh, u, &at_node))
     }
 
     /// Its fields at a step, with velocities and the difference to the finite elements where it has them.

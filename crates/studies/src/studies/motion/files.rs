@@ -28,7 +28,7 @@ fn pair(upper: LineChart, lower: LineChart) -> Drawing {
 fn lines(models: [&ModelMotion; 2], points: impl Fn(&ModelMotion) -> Vec<[f64; 2]>) -> Vec<Line> {
     let models = models.into_iter().zip(STROKES);
     models
-        .map(|(model, stroke)| model.style().line(points(model), stroke))
+        .map(|(model, stroke)| model.kind.style().line(points(model), stroke))
         .collect()
 }
 
@@ -174,7 +174,11 @@ fn phase(model: &ModelMotion, probe: &Probe, axis: usize) -> LineChart {
             Stroke::Thin,
         )
     });
-    let title = format!("Phase of the probe {}, {}", probe.name, model.style().name);
+    let title = format!(
+        "Phase of the probe {}, {}",
+        probe.name,
+        model.kind.style().name
+    );
     LineChart::new(
         &title,
         "displacement [mm]",
@@ -203,7 +207,7 @@ fn probes(sheet: &MovingSheet, motions: &Motions, axis: usize) -> LineChart {
                 .course(probe, axis)
                 .into_iter()
                 .map(|[time, x, _]| [time, x]);
-            let label = format!("{}, {}", probe.name, model.style().name);
+            let label = format!("{}, {}", probe.name, model.kind.style().name);
             Line::new(label, points, colour, stroke)
         }));
     }
@@ -223,7 +227,7 @@ fn energy(model: &ModelMotion) -> LineChart {
         let points = model.points(|now| [now.time, part(&now.energy)]);
         Line::new(*name, points, colour, Stroke::Solid)
     });
-    let title = format!("Energies of the {}", model.style().in_words());
+    let title = format!("Energies of the {}", model.kind.style().in_words());
     LineChart::new(&title, "time [s]", "energy [mJ]", lines.collect())
 }
 
@@ -266,7 +270,7 @@ pub fn grids(sheet: &MovingSheet, motions: &Motions, series: &[ModelSeries]) -> 
         let states = model.states.iter().enumerate();
         let grids =
             states.map(|(instant, state)| (state.at, model.grid(sheet.specimen.sheet(), instant)));
-        GridSeries::instants(model.style.key, grids)
+        GridSeries::instants(model.kind.style().key, grids)
     };
     let mut all: Vec<GridSeries> = series.iter().map(of_model).collect();
     let last = motions.springs.instants().last();
@@ -288,7 +292,7 @@ pub fn springs_table(sheet: &MovingSheet, motions: &Motions) -> Option<(String, 
 pub fn tables(sheet: &MovingSheet, motions: &Motions) -> Vec<(String, Content)> {
     let of_model = |model: &&ModelMotion| {
         let text = of_model(sheet, model).csv();
-        let name = format!("motion_{}.csv", model.style().key);
+        let name = format!("motion_{}.csv", model.kind.style().key);
         (name, Content::Text(text))
     };
     motions.all().iter().map(of_model).collect()

@@ -25,7 +25,7 @@ pub fn headline(sheet: &MovingSheet, motions: &Motions, reference: &ModelSeries)
     let listed = telling(groups).into_iter();
     reference.headline(
         specimen,
-        (reference.style.name, "time [s]", vec![name]),
+        (reference.kind.style().name, "time [s]", vec![name]),
         listed.map(|instant| (instant, time(instant))),
         (
             stored,

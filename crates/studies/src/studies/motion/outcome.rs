@@ -26,7 +26,7 @@ const ROWS: usize = 12;
 pub fn outcome(sheet: &MovingSheet, motions: &Motions, own_error: Option<&OwnError>) -> Outcome {
     let deviations = Deviations::all(sheet, motions);
     let seconds = motions.models().map(|model| {
-        let name = model.style().name.to_owned();
+        let name = model.kind.style().name.to_owned();
         (name, model.seconds)
     });
     let mut blocks = vec![
@@ -150,7 +150,7 @@ fn summary(models: [&ModelMotion; 2]) -> Block {
         energies.fold(0.0, f64::max)
     };
     Table::of(models)
-        .column("model", |model| model.style().name.to_owned())
+        .column("model", |model| model.kind.style().name.to_owned())
         .column("nodes", |model| model.mesh.nodes.len().to_string())
         .column("steps", |model| model.history.steps.to_string())
         .column("taken again", |model| model.history.halved.to_string())
@@ -267,7 +267,7 @@ fn checks(
         Check::new(quantity, "%", wanted, "the study's tolerance", value)
     };
     let energy = |model: &ModelMotion| {
-        let quantity = format!("{}: error of the energy balance", model.style().name);
+        let quantity = format!("{}: error of the energy balance", model.kind.style().name);
         check(
             quantity,
             limits.energy_percent,

@@ -9,15 +9,12 @@ use crate::error::Error;
 use crate::mesh::Mesh;
 use crate::problem::{GroupState, Model, mean_displacement};
 use crate::results::ViscousStress;
-use crate::results::models::ModelStyle;
 use crate::studies::ModelKind;
 use crate::studies::series::{ModelSeries, ModelState, larger_axis};
 
 /// One model's motion.
 pub struct ModelMotion {
-    /// Which model it is.
     pub kind: ModelKind,
-    /// Its mesh.
     pub mesh: Mesh,
     /// Its instants; those of a corrected motion have no energies.
     pub history: History,
@@ -28,7 +25,7 @@ pub struct ModelMotion {
     pub frequency: Option<f64>,
     /// Computing time in s.
     pub seconds: f64,
-    /// What happens at the measured group at its instants; no force where no support holds it.
+    /// The states of the measured group at its instants; without a force where no support holds it.
     pub groups: Vec<GroupState>,
     /// The viscous stresses at its instants.
     pub viscous: Vec<ViscousStress>,
@@ -48,16 +45,14 @@ pub struct Correction {
 
 /// The motions of all models.
 pub struct Motions {
-    /// Of the springs.
     pub springs: ModelMotion,
     /// Of the finite elements, with which the others are compared.
     pub elements: ModelMotion,
-    /// Of the springs, corrected.
     pub correction: Correction,
 }
 
 impl Motions {
-    /// The motions of springs and finite elements, and the correction, with what follows from all of them.
+    /// The motions of springs and finite elements, and the correction, with viscous stresses and the finite elements' displacements.
     pub fn new(
         sheet: &MovingSheet,
         mut springs: ModelMotion,
@@ -151,15 +146,9 @@ impl ModelMotion {
         });
         ModelSeries {
             kind: self.kind,
-            style: self.style(),
             mesh: &self.mesh,
             states: states.collect(),
         }
-    }
-
-    /// Its name and colour.
-    pub fn style(&self) -> ModelStyle {
-        self.kind.style()
     }
 }
 
@@ -207,7 +196,7 @@ impl MovingSheet {
         })
     }
 
-    /// What happens at the measured group at some instants of a model on a mesh; no force where no support holds it.
+    /// The states of the measured group at some instants of a model on a mesh; without a force where no support holds it.
     pub(super) fn measured_states(&self, mesh: &Mesh, instants: &[Instant]) -> Vec<GroupState> {
         let group = &self.specimen.group;
         let state = |now: &Instant| GroupState {

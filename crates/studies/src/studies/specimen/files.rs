@@ -117,7 +117,7 @@ fn fields(specimen: &Specimen, models: &Models, step: usize) -> Vec<Figure> {
     figures.extend(stress_figures(specimen, &series, step, &at, &file));
     let distance = |model: &ModelSeries| {
         let state = model.states.get(step)?;
-        let (name, u, v) = (model.style.name, state.displacement, state.expected?);
+        let (name, u, v) = (model.kind.style().name, state.displacement, state.expected?);
         Some(Panel::distance(name, model.mesh, u, v))
     };
     let distances: Vec<Panel> = series.iter().filter_map(distance).collect();
@@ -185,7 +185,7 @@ fn chart_over_factors(
     let line = |(kind, stroke): (ModelKind, Stroke)| {
         let model = models.series(kind);
         let points = over_factors(specimen, &model, &value);
-        (points.len() > 1).then(|| model.style.line(points, stroke))
+        (points.len() > 1).then(|| model.kind.style().line(points, stroke))
     };
     let lines = DRAWN.into_iter().filter_map(line).collect();
     LineChart::new(title, specimen.along.head(), y, lines)
@@ -254,7 +254,7 @@ pub fn grids(specimen: &Specimen, models: &Models) -> Vec<GridSeries> {
     let springs = GridSeries::steps("springs", springs);
     let of_model = |model: &ModelSeries| {
         let grid = |step: usize| (model.states[step].at, grid(specimen, models, model, step));
-        GridSeries::steps(model.style.key, (0..model.states.len()).map(grid))
+        GridSeries::steps(model.kind.style().key, (0..model.states.len()).map(grid))
     };
     let mut all: Vec<GridSeries> = models.all_series().iter().map(of_model).collect();
     all.insert(1, springs);

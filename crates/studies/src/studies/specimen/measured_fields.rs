@@ -1,4 +1,4 @@
-//! Tables and pictures of what a study measures within its sheet.
+//! Tables and pictures of the measurements within a sheet.
 
 use super::measurements::{Extensometer, LineCut, Measurements};
 use super::problem::Specimen;
@@ -16,7 +16,7 @@ use crate::units::Dimension;
 /// The values of all fields at a point, in the order of [`SheetField::NAMES`].
 type Sample = Option<[f64; SheetField::NAMES.len()]>;
 
-/// What is measured in one state of a model.
+/// The measurements in one state of a model.
 pub(super) struct State {
     /// Which of the models it is.
     model: usize,
@@ -37,7 +37,7 @@ pub struct MeasuredFields<'a> {
 }
 
 impl<'a> MeasuredFields<'a> {
-    /// What the study measures in every state of every model.
+    /// The measurements in every state of every model.
     pub fn of(specimen: &'a Specimen, models: &'a Models) -> Self {
         let series = Vec::from(models.all_series());
         let wanted = &specimen.measurements;
@@ -61,45 +61,45 @@ impl<'a> MeasuredFields<'a> {
     /// `probes.csv`, `lines.csv` and `extensometers.csv`, those that have rows.
     pub fn tables(&self) -> Vec<(String, Content)> {
         let fields = SheetField::NAMES.map(|(name, field)| head(name, field));
-        let force = format!("force_{}_N", ["x", "y"][self.force_axis()]);
-        let lengths = ["length_at_rest_mm", "length_mm", "extensometer_stretch"].map(str::to_owned);
-        let coordinates =
-            |all: &[&'static str]| Vec::from_iter(all.iter().map(|name| (*name).to_owned()));
+        let force = [format!("force_{}_N", ["x", "y"][self.force_axis()])];
+        let point = ["x_mm", "y_mm"];
+        let point_on_line = ["distance_mm", "x_mm", "y_mm"];
+        let lengths = ["length_at_rest_mm", "length_mm", "extensometer_stretch"];
         let tables = [
-            (
-                "probe",
-                [coordinates(&["x_mm", "y_mm"]), fields.to_vec()].concat(),
-            ),
-            (
-                "line",
-                [
-                    coordinates(&["distance_mm", "x_mm", "y_mm"]),
-                    fields.to_vec(),
-                ]
-                .concat(),
-            ),
-            ("extensometer", [&lengths[..], &[force]].concat()),
+            self.table("probe", &point, &fields, |state| self.probe_rows(state)),
+            self.table("line", &point_on_line, &fields, |state| {
+                self.line_rows(state)
+            }),
+            self.table("extensometer", &lengths, &force, |state| {
+                self.extensometer_rows(state)
+            }),
         ];
-        let tables = tables.into_iter().filter_map(|(name, columns)| {
-            let states = self.states.iter();
-            let rows = states.flat_map(|state| match name {
-                "probe" => self.probe_rows(state),
-                "line" => self.line_rows(state),
-                _ => self.extensometer_rows(state),
-            });
-            let rows: Vec<Vec<String>> = rows.collect();
-            let begin = ["model", self.specimen.along.column(), name].map(str::to_owned);
-            let head = [&begin[..], &columns].concat();
-            let text = (!rows.is_empty()).then(|| write_records([head].into_iter().chain(rows)));
-            Some((format!("{name}s.csv"), Content::Text(text?)))
-        });
-        tables.collect()
+        tables.into_iter().flatten().collect()
+    }
+
+    /// A table with the rows of all states; `None` where there are none. Its columns are model, position on the path, name and values.
+    fn table(
+        &self,
+        name: &str,
+        coordinates: &[&str],
+        values: &[String],
+        rows: impl Fn(&State) -> Vec<Vec<String>>,
+    ) -> Option<(String, Content)> {
+        let rows: Vec<Vec<String>> = self.states.iter().flat_map(rows).collect();
+        let begin = ["model", self.specimen.along.column(), name];
+        let begin = begin
+            .iter()
+            .chain(coordinates)
+            .map(|head| (*head).to_owned());
+        let head = begin.chain(values.iter().cloned()).collect();
+        let text = (!rows.is_empty()).then(|| write_records([head].into_iter().chain(rows)))?;
+        Some((format!("{name}s.csv"), Content::Text(text)))
     }
 
     /// A row of a table: the model, the position on the path, a name, and values.
     fn row(&self, state: &State, name: &str, values: &[f64], sample: Vec<String>) -> Vec<String> {
         let factor = self.specimen.factors[state.step].to_string();
-        let begin = [self.models[state.model].style.name, &factor, name].map(str::to_owned);
+        let begin = [self.models[state.model].kind.style().name, &factor, name].map(str::to_owned);
         let values = values.iter().map(ToString::to_string);
         begin.into_iter().chain(values).chain(sample).collect()
     }
@@ -140,7 +140,7 @@ impl<'a> MeasuredFields<'a> {
         larger_axis(last.filter_map(|of_model| Some(of_model.last()?.force)))
     }
 
-    /// What happens at the measured group.
+    /// The state of the measured group.
     pub(super) fn group_state(&self, state: &State) -> &GroupState {
         &self.models[state.model].states[state.step].groups[self.specimen.group_index()]
     }
@@ -149,19 +149,22 @@ impl<'a> MeasuredFields<'a> {
         state.force[self.force_axis()]
     }
 
-    /// The force of the measured group over something, of the models that are drawn.
+    /// The force of the measured group over a quantity, of the models that are drawn.
     pub(super) fn lines(&self, over: impl Fn(&State) -> f64) -> Vec<Line> {
         let line = |(model, stroke): (usize, Stroke)| {
             let states = self.states.iter().filter(|state| state.model == model);
             let points = states.map(|state| [over(state), self.force(state)]);
-            self.models[model].style.line(from_rest(points), stroke)
+            self.models[model]
+                .kind
+                .style()
+                .line(from_rest(points), stroke)
         };
         let lines = self.shown().map(line);
         lines.filter(|line| line.points.len() > 1).collect()
     }
 
-    /// Curves of the fields that are drawn: at the probes over the path, along the lines at the steps that are shown; of the
-    /// extensometers the force over their stretch.
+    /// Curves of the fields that are drawn: at the probes over the path, along the lines at the steps that are shown, and the force over the
+    /// stretch of each extensometer.
     pub fn figures(&self, steps: &[usize]) -> Vec<Figure> {
         let specimen = self.specimen;
         let fields = specimen.pictures.fields.fields.iter();
@@ -221,7 +224,7 @@ impl<'a> MeasuredFields<'a> {
                 let value = state.probes[probe]?[column];
                 Some([along.coordinate(self.specimen.factors[state.step]), value])
             });
-            self.models[model].style.line(points, stroke)
+            self.models[model].kind.style().line(points, stroke)
         });
         let lines = lines.filter(|line| !line.points.is_empty()).collect();
         let name = &self.specimen.measurements.probes[probe].name;
@@ -250,7 +253,7 @@ impl<'a> MeasuredFields<'a> {
             else {
                 continue;
             };
-            let style = self.models[model].style;
+            let style = self.models[model].kind.style();
             for (number, part) in parts(line, &state.lines[index], column)
                 .into_iter()
                 .enumerate()
@@ -278,21 +281,21 @@ impl<'a> MeasuredFields<'a> {
     }
 }
 
-/// How far outside of its nearest cell a probe may lie, in sizes of the cell: curved sides of a lattice lie inside of the outline. A line
-/// ends where the sheet does.
-const BEYOND: [f64; 2] = [0.1, 1e-9];
+/// How far outside of its nearest cell a point may lie, in sizes of the cell. Probes may lie beyond the curved sides of a lattice, whose chords
+/// are inside of the outline; a line ends where the sheet does.
+const MARGINS: [f64; 2] = [0.1, 1e-9];
 
 /// The positions of the probes and of the points of the lines in the mesh of a model.
 fn positions_in(specimen: &Specimen, model: &ModelSeries) -> Vec<Position> {
     let wanted = &specimen.measurements;
     let probes: Vec<[f64; 2]> = wanted.probes.iter().map(|probe| probe.at).collect();
     let lines: Vec<[f64; 2]> = wanted.lines.iter().flat_map(LineCut::points).collect();
-    let all = [probes, lines].into_iter().zip(BEYOND);
+    let all = [probes, lines].into_iter().zip(MARGINS);
     all.flat_map(|(points, margin)| positions(model.mesh, &points, margin))
         .collect()
 }
 
-/// What is measured in a state of a model by its number; `None` where the model has not reached it.
+/// The measurements in a state of a model by its number; `None` where the model has not reached it.
 fn measure(
     specimen: &Specimen,
     model: &ModelSeries,
@@ -323,7 +326,7 @@ fn measure(
     })
 }
 
-/// Values that are rounding beside others of their dimension are none.
+/// Sets values to zero that are rounding errors beside others of their dimension.
 fn without_rounding(samples: &mut [Sample]) {
     const ROUNDING: f64 = 1e-12;
     let dimensions = SheetField::NAMES.map(|(_, field)| field.dimension());
@@ -344,7 +347,7 @@ fn without_rounding(samples: &mut [Sample]) {
     }
 }
 
-/// The values along a line over the distance in mm, in parts between which it leaves the sheet.
+/// The values along a line over the distance in mm, in parts where the line lies on the sheet.
 fn parts(line: &LineCut, samples: &[Sample], column: usize) -> Vec<Vec<[f64; 2]>> {
     let points = line.points();
     let points: Vec<_> = points.iter().zip(samples).collect();

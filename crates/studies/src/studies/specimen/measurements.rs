@@ -14,14 +14,11 @@ pub struct Measurements {
     pub extensometers: Vec<Extensometer>,
 }
 
-/// A straight line across a sheet at rest, all places in mm.
+/// A straight line across a sheet at rest; all coordinates in mm.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LineCut {
-    /// Its name.
     pub name: String,
-    /// Its first point.
     pub from: [f64; 2],
-    /// Its last point.
     pub to: [f64; 2],
     /// How many points it has, evenly apart.
     pub count: usize,
@@ -30,9 +27,7 @@ pub struct LineCut {
 /// Two points of a sheet at rest, in mm.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Extensometer {
-    /// Its name.
     pub name: String,
-    /// Its ends.
     pub ends: [[f64; 2]; 2],
 }
 

@@ -38,9 +38,7 @@ pub struct Correction {
 /// The corrected fields of a path, and how each was reached.
 #[derive(Default)]
 pub struct Fields {
-    /// The states.
     pub states: Vec<State>,
-    /// How they were reached.
     pub correction: Correction,
 }
 

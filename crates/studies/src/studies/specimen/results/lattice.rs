@@ -25,18 +25,15 @@ const CORRECTOR: CorrectorSettings = CorrectorSettings {
 
 /// Springs on the lattice, and the corrected field on the mesh of the coarsest finite elements.
 pub struct OnLattice {
-    /// The lattice.
     pub springs: MassSpring,
-    /// Before the correction.
     pub uncorrected: Solution,
-    /// After it.
     pub corrected: Solution,
     /// How the corrected fields were reached.
     pub correction: Correction,
 }
 
-/// Solves as many load factors as can be reached; where others cannot, the end is told. `file` is what the model's files
-/// begin with.
+/// Solves as many load factors as can be reached, and records where the path ends before the last one. `file` is the beginning of the names of
+/// the model's files.
 pub fn solve(run: &mut Run, model: &Model, file: &str, settings: NewtonSettings) -> Solution {
     let (specimen, progress) = (run.specimen, run.progress);
     let report = |factor: f64| run.report_solved(&model.name, factor);
@@ -90,7 +87,7 @@ impl OnLattice {
         Self::correct(run, &mesh, (springs, uncorrected), nested)
     }
 
-    /// Corrects the springs where nested meshes do not lead.
+    /// Corrects the springs at the load factors that nested meshes have not reached.
     fn correct(
         run: &mut Run,
         mesh: &Mesh,
@@ -128,7 +125,7 @@ impl OnLattice {
     }
 }
 
-/// The corrections on nested meshes at the load factors, as far as they lead; none where the study has no such meshes.
+/// The corrections on nested meshes, up to the last load factor that they reach; none where the study has no such meshes.
 fn correct_nested(run: &Run, mesh: &Mesh) -> Result<Vec<NestedCorrection>, Error> {
     let specimen = run.specimen;
     if !specimen.is_nested(2 * mesh.nodes.len()) {
@@ -140,7 +137,7 @@ fn correct_nested(run: &Run, mesh: &Mesh) -> Result<Vec<NestedCorrection>, Error
     for factor in &specimen.factors {
         match nested.correct(*factor) {
             Ok(field) => fields.push(field),
-            // The rest goes by load steps, which state how far they came.
+            // The remaining load factors are reached in load steps, which state where they end.
             Err(Error::Solve { .. }) => break,
             Err(other) => return Err(other),
         }
@@ -164,7 +161,7 @@ pub fn solve_corrected(run: &mut Run) -> Result<(Solution, Vec<Vec<Multipliers>>
     }
     let springs = solve_springs(run)?;
     let on_lattice = OnLattice::correct(run, &mesh, springs, nested)?;
-    // Where the springs end early the correction goes on.
+    // The correction goes on where the springs end early.
     run.ends.retain(|end| !end.is_of(MASS_SPRING.name));
     Ok((on_lattice.corrected, on_lattice.correction.multipliers))
 }
@@ -173,12 +170,12 @@ pub fn solve_corrected(run: &mut Run) -> Result<(Solution, Vec<Vec<Multipliers>>
 struct Corrections<'a, 'b> {
     run: &'a mut Run<'b>,
     model: &'a Model<'a>,
-    /// The equilibria of the elements by load steps from rest, once they are wanted.
+    /// The equilibria of the elements by load steps from rest, once they were needed.
     steps: Option<Result<Vec<State>, PathEnd>>,
 }
 
 impl Corrections<'_, '_> {
-    /// Corrects as many load factors as can be, beyond the fields that nested meshes have led to.
+    /// Corrects as many load factors as can be reached after those of nested meshes.
     fn all(mut self, uncorrected: &Solution, mut fields: Fields) -> Fields {
         let mut change = vec![0.0; 2 * self.model.mesh.nodes.len()];
         let onto_mesh = uncorrected.mesh.interpolation_on(self.model.mesh);
@@ -209,7 +206,8 @@ impl Corrections<'_, '_> {
         fields
     }
 
-    /// Corrects the springs' field at a load factor; where there is none, or no way from it, load steps lead there.
+    /// Corrects the springs' field at a load factor. Where there is none, or the corrector does not converge from it, the equilibrium is reached
+    /// in load steps first.
     fn at(
         &mut self,
         step: usize,

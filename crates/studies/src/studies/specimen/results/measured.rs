@@ -19,9 +19,7 @@ pub enum Quantity {
 /// What is measured, where, and along which axis.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Measured {
-    /// The quantity.
     pub quantity: Quantity,
-    /// The group.
     pub group: String,
     /// Its number among [`Specimen::groups`].
     pub index: usize,

@@ -47,9 +47,7 @@ pub struct OutlineChange {
 
 /// One mesh of local refinement, with its errors at the worst load factor.
 pub struct Round {
-    /// Its cells.
     pub cells: usize,
-    /// Its nodes.
     pub nodes: usize,
     /// Estimated error of the field in the energy norm in %; not a number where it is not known of all load factors.
     pub energy_percent: f64,

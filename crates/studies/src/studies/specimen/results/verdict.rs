@@ -40,11 +40,10 @@ pub struct Deviation {
 /// A measure of the distance to the finite elements.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub enum Measure {
-    /// Of the displacement.
     Displacement,
-    /// Of the departure from the affine stretch.
+    /// The departure from the affine stretch.
     Departure,
-    /// Of what is measured.
+    /// The force or displacement of the measured group.
     Measured,
 }
 
