@@ -29,7 +29,7 @@ mod solution;
 mod statement;
 mod timing;
 
-use deviations::OwnError;
+use deviations::DiscretisationError;
 pub use problem::MovingSheet;
 use solution::{ModelMotion, Motions};
 
@@ -79,7 +79,7 @@ pub fn compute(sheet: &MovingSheet, progress: Progress) -> Result<Outcome, Error
     let springs = sheet.springs_moved(progress)?;
     let mesh = sheet.elements_mesh(0).expect("the mesh of the study");
     let elements = sheet.elements_moved(&mesh, sheet.time, progress, FINITE_ELEMENTS.name)?;
-    let own_error = OwnError::of(sheet, &elements, progress);
+    let own_error = DiscretisationError::of(sheet, &elements, progress);
     let correction = sheet.correct(&springs, progress)?;
     let motions = Motions::new(sheet, springs, elements, correction);
     Ok(outcome::outcome(sheet, &motions, own_error.as_ref()))

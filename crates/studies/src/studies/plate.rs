@@ -1,4 +1,4 @@
-//! Plates between two grips: the dialect of a strip that is clamped at one end and pulled at the other, on grids of lines.
+//! Plates between two grips: strips that are clamped at one end and pulled at the other, with keys of their own, on grids of lines.
 
 use std::path::Path;
 

@@ -23,8 +23,8 @@ pub fn tables<T>(root: &Section, key: &'static str, read: impl FnMut(&Section) -
 
 /// A point of the sheet at rest in mm.
 pub fn read_point(section: &Section, key: &'static str, region: Option<&Region>) -> [f64; 2] {
-    /// Of a cell's size: curved sides of a lattice lie inside of the outline.
-    const BEYOND: f64 = 0.1;
+    /// How far a point may be outside of the lattice, in sizes of a cell: its curved sides lie inside of the outline.
+    const MARGIN: f64 = 0.1;
     let at = section.quantities(key, Dimension::Length, Bound::Any);
     let Ok(at) = <[f64; 2]>::try_from(at) else {
         let hint = "such as [\"15 mm\", \"5 mm\"]";
@@ -36,7 +36,7 @@ pub fn read_point(section: &Section, key: &'static str, region: Option<&Region>)
         return at;
     };
     let in_box = (left..=right).contains(&&at[0]) && (bottom..=top).contains(&&at[1]);
-    if !in_box || mesh.outside(at) > BEYOND {
+    if !in_box || mesh.outside(at) > MARGIN {
         let hint = format!(
             "the sheet lies from [\"{left} mm\", \"{bottom} mm\"] to [\"{right} mm\", \"{top} mm\"]"
         );

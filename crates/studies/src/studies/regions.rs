@@ -55,7 +55,7 @@ impl<'a> SheetCards<'a> {
         rest.into_iter().chain(regions).collect()
     }
 
-    /// What a rule says of the cells of each card; of several cards, with the names of their regions.
+    /// The findings of a rule in the cells of each card; of several cards, with the names of their regions.
     pub fn in_turn(
         self,
         mesh: &Mesh,
@@ -86,7 +86,7 @@ impl<'a> SheetCards<'a> {
         }
     }
 
-    /// The card, or the cards with their regions, in words.
+    /// A description of the card, or of the cards with their regions.
     pub fn words(self, mesh: &Mesh, of_card: impl Fn(&Card) -> String) -> String {
         let regions = self.numbered(mesh).into_iter();
         let regions = regions.map(|(_, name, card)| format!("{}, on {name}", of_card(card)));
@@ -104,7 +104,7 @@ pub fn regions_of(mesh: &Mesh) -> Vec<&str> {
     regions.map(|(name, _)| &**name).collect()
 }
 
-/// The words for the parts into which all cells of a mesh are divided, as for several materials.
+/// The names of the regions into which all cells of a mesh are divided, as for several materials; `None` where some cells belong to none.
 pub fn divided(mesh: &Mesh) -> Option<String> {
     let parts = regions_of(mesh).into_iter();
     let parts = parts.filter(|name| mesh.groups()[*name].cells.len() < mesh.cell_count());

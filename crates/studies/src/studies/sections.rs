@@ -29,7 +29,7 @@ pub fn refuse_memory(corrector: &Section, method: &str) {
     corrector.fault("method", &message, hint);
 }
 
-/// How exactly a corrected field climbs.
+/// The settings of a climb.
 pub fn read_climb(section: &Section) -> ClimbSettings {
     let bound = Bound::Within(1e-6, 1.0);
     ClimbSettings {
@@ -84,7 +84,7 @@ pub fn read_plate(section: &Section<'_>, card: Option<&Card>) -> (ClampedPlate, 
     (problem, cells.unwrap_or([2, 2]))
 }
 
-/// Warns of measures that no thin sheet has.
+/// Warns of a thickness that is implausible for a thin sheet.
 pub fn check_thickness(section: &Section<'_>, thickness: f64, size: [f64; 2], card: Option<&Card>) {
     let is_thin = card.is_none_or(|card| card.law.plane_state() == PlaneState::Stress);
     if let Some(message) = implausible_sheet(size, thickness).filter(|_| is_thin) {
@@ -93,13 +93,13 @@ pub fn check_thickness(section: &Section<'_>, thickness: f64, size: [f64; 2], ca
     }
 }
 
-/// What so many states on the mesh of `cells` need, with so many unknowns a cell.
+/// The need of some states on a mesh of `cells` with a number of unknowns a cell.
 pub fn need_of_cells(cells: [usize; 2], unknowns: f64, states: usize) -> Need {
     let all = cells[0] as f64 * cells[1] as f64;
     Need::of_states(unknowns * all, states as f64).on_cells(all)
 }
 
-/// Springs cannot make a lattice of long cells isotropic.
+/// Refuses long cells, of which springs cannot make an isotropic lattice.
 fn check_aspect(section: &Section<'_>, size: [f64; 2], cells: [usize; 2]) {
     let aspect = aspect(size, cells);
     if aspect > LARGEST_ASPECT {
@@ -204,7 +204,7 @@ pub fn read_newton(section: &Section<'_>) -> NewtonSettings {
     }
 }
 
-/// What the corrected field has to reach at every load factor, in percent.
+/// The requirements on the corrected field at every load factor, in percent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tolerances {
     /// Largest deviation in displacement.

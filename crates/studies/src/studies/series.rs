@@ -1,5 +1,5 @@
 //! The states of one model along a path: equilibria at load factors, or the instants of a motion. Pictures, grids, headlines and findings of
-//! all studies of one sheet are made of them.
+//! all studies of one sheet are made from them.
 
 use super::ModelKind;
 use super::specimen::problem::{Outline, Specimen};
@@ -47,7 +47,7 @@ pub struct ModelState<'a> {
     pub past: Vec<&'a [f64]>,
     /// The viscous part of the stresses, in a motion.
     pub viscous: Option<&'a ViscousStress>,
-    /// What happens at the groups.
+    /// The states of the groups.
     pub groups: &'a [GroupState],
     /// The finite elements' displacement at the nodes of the model; `None` where they have none, and of themselves.
     pub expected: Option<&'a [f64]>,

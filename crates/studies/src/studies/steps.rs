@@ -1,8 +1,8 @@
-//! What the steps of a study run along, of any kind.
+//! The parameter along the steps of a study of any kind.
 
 use super::specimen::Along;
 
-/// What the steps of a study run along.
+/// The parameter along the steps of a study.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Steps {
     /// The path of a plate or a specimen.

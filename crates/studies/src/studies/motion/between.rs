@@ -1,10 +1,10 @@
-//! What lies between the instants of a motion that are kept.
+//! Interpolation of a motion between the instants that are kept.
 
-/// Parts of the way from one instant to the next.
+/// Parts of the interval from one instant to the next.
 pub const PARTS: usize = 12;
 
-/// How far the mean velocity of a way may be from that of its ends, over the largest of all: a sine with five instants a period is
-/// this far off.
+/// The largest difference of the mean velocity of an interval from the mean of the velocities at its ends, over the largest of the three: that of
+/// a sine with five instants a period.
 const FAR: f64 = 0.15;
 
 /// Times in s, displacements in mm and velocities in mm/s at the instants and between them, on the cubics that have the displacement and
@@ -14,8 +14,7 @@ const FAR: f64 = 0.15;
 /// x(s) = (1 + 2s)(1 − s)² x₀ + s(1 − s)² h v₀ + s²(3 − 2s) x₁ − s²(1 − s) h v₁,   s = (t − t₀)/h,   v = dx/dt
 /// ```
 ///
-/// and on straight lines where the instants are too far apart to tell of what was between them: where the mean of both velocities is not that
-/// of the way.
+/// and on straight lines where the instants are too far apart for a cubic: where the mean of both velocities is not that of the interval.
 pub fn with_cubics(instants: &[[f64; 3]]) -> Vec<[f64; 3]> {
     let between = instants.windows(2).flat_map(|pair| {
         let [[t0, x0, v0], [t1, x1, v1]] = [pair[0], pair[1]];
@@ -46,7 +45,7 @@ mod tests {
 
     /// A ramp that begins and ends between instants.
     #[test]
-    fn what_instants_do_not_tell_is_straight() {
+    fn instants_that_are_far_apart_are_joined_by_straight_lines() {
         let points = with_cubics(&[[0.0, 0.0, 0.0], [1.0, 8.0, 30.0], [2.0, 15.0, 0.0]]);
         let most = points.iter().fold(0.0, |most: f64, [_, x, _]| most.max(*x));
         assert!((most - 15.0).abs() < 1e-12, "{most}");

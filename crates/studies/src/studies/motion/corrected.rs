@@ -11,7 +11,7 @@ use crate::mesh::Mesh;
 use crate::studies::{ModelKind, Progress};
 use crate::units::number;
 
-/// The instants that are written, of displacements at all steps, of which `within` lie in an interval and each takes `step` s.
+/// The instants that are written, from the displacements at all steps: an interval has `within` steps of `step` s.
 ///
 /// # Errors
 /// [`SolveFault::Inverted`].
@@ -54,14 +54,14 @@ fn none(note: String) -> Correction {
     }
 }
 
-/// Steps in a period of the first longitudinal vibration at least.
+/// The least number of steps in a period of the first longitudinal vibration.
 const STEPS: f64 = 200.0;
 /// β of Newmark's average acceleration.
 const AVERAGE_ACCELERATION: f64 = 0.25;
 
 impl MovingSheet {
-    /// Corrects the motion of the springs on the mesh of the corrected field; nothing but a note where three consecutive instants do not
-    /// hold the equation of motion.
+    /// Corrects the motion of the springs on the mesh of the corrected field; only a note where the equation of motion cannot be written for three
+    /// consecutive instants.
     pub fn correct(&self, springs: &ModelMotion, progress: Progress) -> Result<Correction, Error> {
         if !self.is_corrected {
             return Ok(none(
@@ -120,7 +120,7 @@ impl MovingSheet {
         })
     }
 
-    /// The corrected motion on its mesh, since a time.
+    /// The corrected motion on its mesh; its computing time is that since `clock` was started.
     fn corrected(&self, mesh: &Mesh, instants: Vec<Instant>, clock: Clock) -> ModelMotion {
         ModelMotion {
             kind: ModelKind::Corrected,
@@ -148,7 +148,7 @@ impl MovingSheet {
         }
     }
 
-    /// How the motion is corrected.
+    /// The settings of the correction in time.
     fn windows(&self) -> WindowSettings {
         let [length, width] = self.specimen.outline.size();
         WindowSettings {

@@ -1,4 +1,4 @@
-//! How far a motion is from the finite elements', and how far these may be from the truth.
+//! Deviations of a motion from the finite elements', and the discretisation error of these.
 
 use super::problem::MovingSheet;
 use super::solution::{ModelMotion, Motions};
@@ -9,7 +9,7 @@ use crate::mesh::Mesh;
 use crate::solve::vector::difference;
 use crate::studies::Progress;
 
-/// How far a motion on the lattice is from the finite elements'.
+/// The deviations of a motion on the lattice from the finite elements'.
 pub struct Deviations {
     /// Of the displacement at each instant, in relative L2 over the largest of all instants, in %.
     pub displacement: Vec<f64>,
@@ -68,20 +68,19 @@ impl Deviations {
     }
 }
 
-/// The finite elements' own error over all instants, by cells twice and four times as large and by steps half as long.
-pub struct OwnError {
+/// The finite elements' discretisation error over all instants, estimated from cells twice and four times as large and from steps half as long.
+pub struct DiscretisationError {
     /// Of the displacement, in %.
     pub displacement: f64,
     /// Of the right grip's force, in %.
     pub force: Option<f64>,
-    /// Its share by the length of the steps, in % of the displacement; `None` where steps are far shorter than cells need, or half
-    /// of them are too many.
+    /// The share of the time steps, in % of the displacement; `None` where steps are far shorter than cells need, or halved ones are too many.
     pub by_steps: Option<f64>,
-    /// The meshes by which it is estimated, in words.
+    /// Descriptions of the meshes from which it is estimated.
     pub meshes: Vec<String>,
 }
 
-impl OwnError {
+impl DiscretisationError {
     /// Of the finite elements' motion; `None` where its cells cannot be larger, or larger ones have no solution.
     ///
     /// ```text
@@ -108,7 +107,7 @@ impl OwnError {
         let both = [0, 1].map(|which| {
             let last = last[which]?;
             let before = before.and_then(|distances| distances[which]);
-            // Of waves, coarse cells tell an order that is too low, and any error with it.
+            // For waves, coarse cells show an order that is too low, and with it an error that is too large.
             let cells = before.map_or(last, |before| of_distances(before, last).0.min(last));
             let steps = steps.and_then(|distances| distances[which]).unwrap_or(0.0);
             Some(cells + BY_HALVED_STEPS * steps)
@@ -146,10 +145,10 @@ impl OwnError {
 const BY_HALVED_STEPS: f64 = 4.0 / 3.0;
 
 impl MovingSheet {
-    /// The same time with twice as many steps as a motion took; `None` where the smallest cell's vibration limits them: they are far shorter
-    /// then than what is seen of the motion needs.
+    /// The same time with twice as many steps as a motion took; `None` where the vibration of the smallest cell limits them: they are then far
+    /// shorter than the resolved motion needs.
     fn halved_steps(&self, history: &History) -> Option<TimeSettings> {
-        /// A rounding error makes no step more.
+        /// So that rounding errors do not add a step.
         const BARELY: f64 = 1.0 - 1e-9;
         if let (Step::Automatic, Integrator::VelocityVerlet) =
             (self.time.step, self.time.integrator)

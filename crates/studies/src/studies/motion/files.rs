@@ -15,7 +15,7 @@ use crate::studies::series::{ModelSeries, larger_axis, stress_figures};
 use crate::studies::{ModelKind, SPRINGS_TABLE};
 use crate::units::brief;
 
-/// How a model's lines are drawn.
+/// The strokes of springs and finite elements.
 const STROKES: [Stroke; 2] = [Stroke::Dashed, Stroke::Solid];
 
 /// Two charts of the same height, one below the other.
@@ -231,7 +231,7 @@ fn energy(model: &ModelMotion) -> LineChart {
     LineChart::new(&title, "time [s]", "energy [mJ]", lines.collect())
 }
 
-/// What the pictures of the sheets show.
+/// The quantity that the pictures of the sheets show, by its axis.
 const ALONG: [&str; 2] = ["displacement along x [mm]", "displacement along y [mm]"];
 
 /// How many instants all models have.

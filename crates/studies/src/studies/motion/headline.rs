@@ -1,4 +1,4 @@
-//! What a motion is computed for at a glance.
+//! The main results of a motion.
 
 use std::collections::BTreeSet;
 
@@ -9,7 +9,7 @@ use crate::results::Block;
 use crate::studies::series::{ModelSeries, larger_axis};
 use crate::units::number;
 
-/// Force and displacement of the measured group at the begin, at their extremes and at the end, and the largest values when most energy is
+/// Force and displacement of the measured group at the beginning, at their extremes and at the end, and the largest values when most energy is
 /// stored, by the finite elements.
 pub fn headline(sheet: &MovingSheet, motions: &Motions, reference: &ModelSeries) -> Vec<Block> {
     let ModelMotion {
@@ -22,7 +22,7 @@ pub fn headline(sheet: &MovingSheet, motions: &Motions, reference: &ModelSeries)
         Some(_) => "right side",
         None => &specimen.group,
     };
-    let listed = telling(groups).into_iter();
+    let listed = significant(groups).into_iter();
     reference.headline(
         specimen,
         (reference.kind.style().name, "time [s]", vec![name]),
@@ -36,7 +36,7 @@ pub fn headline(sheet: &MovingSheet, motions: &Motions, reference: &ModelSeries)
 
 /// The first instant, the last one, and those at which displacement and force of the measured group along x or y, whichever is larger, are largest
 /// and smallest.
-fn telling(states: &[GroupState]) -> BTreeSet<usize> {
+fn significant(states: &[GroupState]) -> BTreeSet<usize> {
     let larger = |value: fn(&GroupState) -> [f64; 2]| {
         let axis = larger_axis(states.iter().map(value));
         move |state: &GroupState| value(state)[axis]

@@ -1,8 +1,8 @@
-//! What the report says about a motion: energies, frequencies, deviations in time.
+//! The report of a motion: energies, frequencies, deviations in time.
 
 use serde_json::json;
 
-use super::deviations::{Deviations, OwnError};
+use super::deviations::{Deviations, DiscretisationError};
 use super::files::{animation, figures, grids, springs_table, tables};
 use super::headline::headline;
 use super::problem::MovingSheet;
@@ -23,7 +23,11 @@ use crate::units::number;
 const ROWS: usize = 12;
 
 /// The outcome of both models and the corrected motion.
-pub fn outcome(sheet: &MovingSheet, motions: &Motions, own_error: Option<&OwnError>) -> Outcome {
+pub fn outcome(
+    sheet: &MovingSheet,
+    motions: &Motions,
+    own_error: Option<&DiscretisationError>,
+) -> Outcome {
     let deviations = Deviations::all(sheet, motions);
     let seconds = motions.models().map(|model| {
         let name = model.kind.style().name.to_owned();
@@ -177,7 +181,7 @@ fn summary(models: [&ModelMotion; 2]) -> Block {
 fn compared(
     sheet: &MovingSheet,
     (of_springs, of_corrected): &(Deviations, Option<Deviations>),
-    own_error: Option<&OwnError>,
+    own_error: Option<&DiscretisationError>,
 ) -> String {
     let mut text = String::new();
     let of_corrected = of_corrected
@@ -201,7 +205,7 @@ fn compared(
             "The finite elements' own error is not known: there is no solution on larger cells."
                 .to_owned()
         },
-        OwnError::describe,
+        DiscretisationError::describe,
     )
 }
 
@@ -245,7 +249,7 @@ fn in_time(
     table.block()
 }
 
-/// How the reference becomes a better one.
+/// How the reference becomes more accurate.
 fn remedy(sheet: &MovingSheet) -> String {
     let cells = match sheet.specimen.outline {
         Outline::Grid(_) => "more `finite_element.cells`",
@@ -259,7 +263,7 @@ fn checks(
     sheet: &MovingSheet,
     motions: &Motions,
     (of_springs, of_corrected): &(Deviations, Option<Deviations>),
-    own_error: Option<&OwnError>,
+    own_error: Option<&DiscretisationError>,
 ) -> Vec<Check> {
     let limits = sheet.tolerances;
     let check = |quantity: String, limit, value| {

@@ -1,4 +1,4 @@
-//! A sheet that moves: supports, loads, start, and what is computed.
+//! A sheet that moves: supports, loads, start, and the models that are computed.
 
 use crate::budget::Need;
 use crate::dynamics::{
@@ -14,7 +14,7 @@ use crate::problem::{BoundaryProblem, Model};
 use crate::studies::points::Probe;
 use crate::studies::specimen::{NEWTON, Outline, PlateGrids, Specimen};
 
-/// Memory of an unknown at an instant, with what is written of it, estimated: numbers of the state, of the history and of the text.
+/// Estimated memory of an unknown at an instant: the numbers of the state and of the history, and their text in files.
 const BYTES_OF_AN_INSTANT: f64 = 200.0;
 
 /// How often the cells of a shape's finite elements are halved: once beyond those of the corrected field.
@@ -39,7 +39,7 @@ pub struct Drive {
     pub release: Option<f64>,
 }
 
-/// What has to be reached, in %.
+/// Requirements in %.
 #[derive(Clone, Copy)]
 pub struct Tolerances {
     /// Largest error of the energy balance.
@@ -59,7 +59,7 @@ pub struct MovingSheet {
     pub density: f64,
     /// The viscous part of the material.
     pub viscosity: ViscousMaterial,
-    /// What moves supports and loads.
+    /// The load factor of supports and loads.
     pub drive: Drive,
     /// In mm/s².
     pub gravity: [f64; 2],
@@ -75,7 +75,7 @@ pub struct MovingSheet {
     pub is_corrected: bool,
     /// Points that are watched.
     pub probes: Vec<Probe>,
-    /// What has to be reached.
+    /// The requirements.
     pub tolerances: Tolerances,
 }
 
@@ -132,7 +132,7 @@ impl MovingSheet {
         }
     }
 
-    /// What its motion will use. With the wave speed c at rest and cells of the side a, velocity Verlet takes steps of about
+    /// The memory and work that its motion needs. With the wave speed c at rest and cells of the side a, velocity Verlet takes steps of about
     /// half of the longest stable one, which is shorter in a stretched or damped sheet:
     ///
     /// ```text
@@ -239,12 +239,12 @@ impl MovingSheet {
         })
     }
 
-    /// Whether a support is one that lets go.
+    /// Whether the support of a group is released.
     fn is_released(&self, group: &str) -> bool {
         self.drive.release.is_some() && group == self.specimen.group
     }
 
-    /// The supports on a mesh, in the order of the study. A node that several hold belongs to one that never lets go, if there is one.
+    /// The supports on a mesh, in the order of the study. A node that several hold belongs to one that is never released, if there is one.
     fn supports(&self, mesh: &Mesh) -> Result<Vec<MovingSupport>, Error> {
         let problem = &self.specimen.problem;
         let mut order: Vec<usize> = (0..problem.supports.len()).collect();
@@ -299,13 +299,13 @@ impl MovingSheet {
         supports.any(|(group, _)| *group == self.specimen.group)
     }
 
-    /// Whether the measured group has a force that is worth a picture: it is held, and does not let go at once.
+    /// Whether the measured group has a force that is worth a picture: it is held, and not released at time 0.
     pub(super) fn has_force(&self) -> bool {
         self.drive.release != Some(0.0) && self.is_measured_held()
     }
 }
 
-/// How large a mesh is.
+/// The extent of a mesh.
 #[derive(Default)]
 struct Extent {
     cells: f64,

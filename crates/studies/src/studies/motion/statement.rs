@@ -1,8 +1,8 @@
-//! What a study says, in the report's words and for machines: sheet, supports, loads, material.
+//! The statements of a study for the report and for machines: sheet, supports, loads, material.
 
 use serde_json::{Map, Value, json};
 
-use super::deviations::OwnError;
+use super::deviations::DiscretisationError;
 use super::problem::{Drive, MovingSheet, PointForce};
 use crate::dynamics::TimeFunction;
 use crate::mass_spring::{DashpotLaw, SpringLaw};
@@ -10,7 +10,7 @@ use crate::results::{Block, object};
 use crate::studies::specimen::{Along, load_words, support_words};
 use crate::units::number;
 
-/// The sheet, what moves and loads it, what springs and dashpots follow.
+/// The sheet, its supports and loads, and the laws of springs and dashpots.
 pub fn blocks(sheet: &MovingSheet) -> Vec<Block> {
     let rows = sentences(sheet).into_iter();
     vec![
@@ -23,7 +23,7 @@ pub fn blocks(sheet: &MovingSheet) -> Vec<Block> {
 }
 
 /// The same for machines.
-pub fn json(sheet: &MovingSheet, own_error: Option<&OwnError>) -> Map<String, Value> {
+pub fn json(sheet: &MovingSheet, own_error: Option<&DiscretisationError>) -> Map<String, Value> {
     let sentences = sentences(sheet).into_iter();
     let says: Map<_, _> = sentences
         .map(|(what, words)| (what, json!(words)))

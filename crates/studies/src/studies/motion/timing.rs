@@ -1,4 +1,4 @@
-//! Whether the times of a motion suit what moves.
+//! Checks of the times of a motion.
 
 use super::functions::rates;
 use super::problem::{Drive, PointForce};
@@ -15,9 +15,9 @@ pub fn drive_section(along: Along) -> &'static str {
     }
 }
 
-/// Warns where stresses that are made of the instants miss what relaxes between them.
+/// Warns where stresses, which are evaluated at the instants, miss relaxation between them.
 fn check_interval(section: &Section, time: &TimeSettings, viscosity: &ViscousMaterial) {
-    /// Of the shortest relaxation time: stresses are a few percent off then where a motion changes between two instants.
+    /// The longest interval over the shortest relaxation time: stresses are then a few percent off where a motion changes between two instants.
     const SHORT: f64 = 0.25;
     let shortest = viscosity.relaxation.iter().map(|term| term.time);
     let shortest = shortest.fold(f64::INFINITY, f64::min);
@@ -33,9 +33,9 @@ fn check_interval(section: &Section, time: &TimeSettings, viscosity: &ViscousMat
     }
 }
 
-/// Whether steps and instants follow a load factor that oscillates; steps that do not would make another motion of it.
+/// Whether steps and instants resolve a load factor that oscillates; steps that do not would compute another motion.
 fn check_swing(section: &Section, time: &TimeSettings, drive: &Drive) {
-    /// Steps in a period below which it is another motion, and those below which it is a rough one.
+    /// Steps in a period below which the motion is another one, and below which it is inaccurate.
     const FEWEST: f64 = 8.0;
     const FEW: f64 = 20.0;
     let Some(period) = drive.factor.period() else {
@@ -97,7 +97,7 @@ fn check_idle(
     }
 }
 
-/// Looks whether steps, instants and the end suit what moves.
+/// Checks whether steps, instants and duration suit the motion.
 pub fn check_times(
     root: &Section,
     in_time: &Section,
@@ -114,7 +114,7 @@ pub fn check_times(
     check_idle(root, time, (drive, along), forces);
 }
 
-/// Warns where a motion lasts longer, or is faster or slower, than the tests behind the relaxation.
+/// Warns where a motion lasts longer, or is faster or slower, than the tests from which the relaxation was found.
 fn check_covered(
     root: &Section,
     in_time: &Section,

@@ -1,4 +1,4 @@
-//! The study file of a plate: a strip between two grips in words of its own.
+//! The study file of a plate: a strip between two grips, with keys of its own.
 //!
 //! Every default stands in `plate/default.toml`, which is also what `gelbench new` writes.
 
@@ -24,14 +24,15 @@ use crate::studies::specimen::{
 };
 use crate::units::Dimension;
 
-/// The same with compressions, and the smallest that is none.
+/// Stretches that a plate may be given, compressions included.
 const WITH_COMPRESSIONS: Bound = Bound::Range(-0.95, 100.0, "from −95 % to 10000 %");
+/// The smallest stretch that counts as one.
 const SMALLEST: f64 = 1e-9;
 
 /// Cells across a plate that automatic finite elements have at most for graded corrected fields.
 const MOST_ACROSS: f64 = 160.0;
 
-/// Of cells towards the corners.
+/// How much smaller cells may become towards the corners.
 const GRADINGS: Bound = Bound::Within(1.0, 4.0);
 
 /// Reads a study; `None` where it has faults, which are recorded.
@@ -108,7 +109,7 @@ fn outline(
     }))
 }
 
-/// Warns of finite elements that are the corrected field once more.
+/// Warns of finite elements that solve the corrected field's own equations.
 fn warn_of_own_reference(root: &Section, outline: &Outline) {
     let Outline::Grid(grids) = outline else {
         return;
@@ -122,7 +123,7 @@ fn warn_of_own_reference(root: &Section, outline: &Outline) {
     }
 }
 
-/// What cannot follow a material that softens.
+/// Refuses options that cannot follow a material that softens.
 fn check_memory(root: &Section, lattice: LatticeSettings, corrector: Option<GridCorrection>) {
     if lattice.area_term {
         let message = "the area term of the lattice does not soften with the card's material";

@@ -1,9 +1,9 @@
-//! What the states of a path are numbered by, in words.
+//! The parameter along a path.
 
 use crate::problem::ClampedPlate;
 use crate::solve::PathEnd;
 
-/// What the states of a path are numbered by; the models take both for the load factor.
+/// The parameter along a path; to the models both are the load factor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Along {
     /// The factor of all motions and loads.

@@ -188,7 +188,7 @@ pub fn balance_words(balances: &[Balance]) -> String {
 /// The warning about moments that nothing compares: where the measured force is none, as of a ring that is turned, the requirement of the
 /// force is met by any field.
 pub fn unjudged_moment(specimen: &Specimen, models: &Models) -> Option<String> {
-    /// A smaller share of the forces on nodes times the specimen's larger side is what meshes leave.
+    /// Smaller shares of the forces on nodes times the specimen's larger side are discretisation errors.
     const LEAST: f64 = 1e-2;
     let (measured, finest) = (&models.reference.measured, &models.reference.finest);
     let corrected = models.of(ModelKind::Corrected);
@@ -233,7 +233,7 @@ fn scales(specimen: &Specimen, models: &Models) -> [f64; 3] {
     [force, force * side, side]
 }
 
-/// What happens at all groups in a model at a load factor, for machines; `None` where it has no solution.
+/// The states of all groups in a model at a load factor, for machines; `None` where it has no solution.
 pub fn groups(specimen: &Specimen, solution: &Solution, step: usize) -> Option<Value> {
     let states = solution.groups(step)?;
     let group = |(name, state): (&str, &GroupState)| {

@@ -1,4 +1,4 @@
-//! What a specimen is computed for at a glance.
+//! The main results of a specimen.
 
 use super::problem::Specimen;
 use super::results::models::Models;

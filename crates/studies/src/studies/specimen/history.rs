@@ -1,4 +1,4 @@
-//! How the models came to their states and how far they are from each other along the path: convergence, multipliers, deviations.
+//! The convergence of the models, their multipliers, and their deviations along the path.
 
 use super::problem::Specimen;
 use super::results::models::Models;
@@ -46,8 +46,8 @@ pub fn deviations_chart(
     Some((caption, Drawing::charts(charts, 320)?))
 }
 
-/// How the models came to the last load factor that one of them has reached, with a caption: the residuals of those that look for an
-/// equilibrium of forces, and the corrections of the corrected field, which is another quantity.
+/// The convergence at the last load factor that a model has reached, with a caption: the residual forces of springs and finite elements, and the
+/// corrections of the corrected field, which are another quantity.
 pub fn residuals_chart(specimen: &Specimen, models: &Models) -> Option<(String, Drawing)> {
     let last = models.reached().checked_sub(1)?;
     let at = specimen.describe_step(last);
@@ -81,7 +81,7 @@ pub fn residuals_chart(specimen: &Specimen, models: &Models) -> Option<(String, 
     Some((caption, drawing))
 }
 
-/// The iterations of every model at every load factor, and what they mean.
+/// The iterations of every model at every load factor, and their explanation.
 pub fn convergence(specimen: &Specimen, models: &Models) -> Vec<Block> {
     let rows = (0..models.reached()).flat_map(|step| {
         let states = models.all().into_iter();
@@ -121,7 +121,7 @@ pub fn convergence(specimen: &Specimen, models: &Models) -> Vec<Block> {
     blocks
 }
 
-/// What the residuals of the corrected field are.
+/// An explanation of the residuals of the corrected field.
 fn corrections_in_words(specimen: &Specimen) -> &'static str {
     let climbs = specimen
         .grids()
@@ -136,7 +136,7 @@ fn corrections_in_words(specimen: &Specimen) -> &'static str {
     }
 }
 
-/// How the climb came to the corrected field at every stretch; nothing where nothing climbed.
+/// The starts of the climb at every stretch; `None` without a climb.
 fn climbs(specimen: &Specimen, models: &Models) -> Option<Block> {
     let climbs = models
         .on_lattice

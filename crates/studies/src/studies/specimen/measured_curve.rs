@@ -12,7 +12,7 @@ use crate::error::{Error, suggestion};
 use crate::results::{Figure, Line, LineChart, Stroke};
 use crate::units::Dimension;
 
-/// What a column has.
+/// The quantity of a column.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Signal {
     Displacement,
@@ -32,7 +32,7 @@ const NAMES: &ColumnNames<Signal> = &[
 
 const HINT: &str = "a measured curve has a column `force [N]`, and `displacement [mm]`, `stretch [-]` or `strain [%]`";
 
-/// Reads `[measured]` of a study in a folder; `length` is that of a plate, which stretches are of where no extensometer is named.
+/// Reads `[measured]` of a study in a folder; `length` is that of a plate, to which stretches refer where no extensometer is named.
 pub(crate) fn read_measured_curve(
     root: &Section,
     folder: &Path,
@@ -74,7 +74,7 @@ pub(crate) fn read_measured_curve(
     Some(MeasuredCurve { file, over, points })
 }
 
-/// What the force is over, and the points in internal units, stretches as λ − 1: a stretch nearer to 1 than to 0 at the least force is λ.
+/// The quantity over which the force is, and the points in internal units, stretches as λ − 1: a stretch nearer to 1 than to 0 at the least force is λ.
 fn curve(table: &Table) -> Result<(Signal, Vec<[f64; 2]>), Error> {
     let column = |signal| column_meaning(NAMES, signal, table);
     let mut motions = [Signal::Displacement, Signal::Stretch, Signal::Strain].into_iter();
@@ -152,7 +152,7 @@ impl MeasuredFields<'_> {
         Some(Figure::new(name, caption, chart))
     }
 
-    /// How far a model has moved in a state, as the measured curve has it.
+    /// The displacement or stretch of a model in a state, as on the axis of the measured curve.
     fn moved(&self, state: &State, over: &Over, axis: usize) -> f64 {
         let displacement = self.group_state(state).displacement[axis];
         match over {

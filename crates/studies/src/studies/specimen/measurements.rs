@@ -1,4 +1,4 @@
-//! What a study measures within its sheet: fields at points, fields along lines, virtual extensometers.
+//! Measurements within a sheet: fields at points, fields along lines, virtual extensometers.
 
 use crate::mesh::Mesh;
 use crate::studies::points::Probe;
@@ -59,18 +59,18 @@ impl Extensometer {
     }
 }
 
-/// A measured curve: the force of the measured group over what moved.
+/// A measured curve: the force of the measured group over a displacement or a stretch.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeasuredCurve {
     /// The file, as the study names it.
     pub file: String,
-    /// What the force is over.
+    /// The quantity on its axis.
     pub over: Over,
     /// Displacement in mm or stretch λ − 1, and force in N.
     pub points: Vec<[f64; 2]>,
 }
 
-/// What a force is over.
+/// The quantity over which a measured force is drawn.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Over {
     /// The displacement of the measured group in mm.

@@ -1,4 +1,4 @@
-//! What the report says about a specimen: what the study states, deviations, own errors, forces, warnings.
+//! The report of a specimen: statements of the study, deviations, errors of the reference, forces, warnings.
 
 use serde_json::{Map, Value, json};
 
@@ -175,7 +175,7 @@ fn quantities(
     .collect()
 }
 
-/// What a model has at one load factor; `None` where it has not reached it.
+/// The results of a model at one load factor; `None` where it has not reached it.
 fn quantities_of_model(
     specimen: &Specimen,
     models: &Models,
@@ -203,7 +203,7 @@ fn quantities_of_model(
     Some(all)
 }
 
-/// How far a model is from the finite elements.
+/// The deviation of a model from the finite elements.
 fn deviation_json(distance: Option<Distance>) -> Map<String, Value> {
     let mut all = object(json!({
         "displacement_percent": distance.map(|distance| distance.displacement),
@@ -277,7 +277,7 @@ fn deviation_table(
         .block()
 }
 
-/// What is known of the finite elements' own error at every load factor.
+/// The estimates of the finite elements' own error at every load factor.
 fn reference_errors(specimen: &Specimen, models: &Models) -> Block {
     let (along, reference) = (specimen.along, &models.reference);
     let (measured, what) = (&reference.measured, reference.measured.name());
@@ -327,7 +327,7 @@ fn introduction(specimen: &Specimen, models: &Models) -> String {
     )
 }
 
-/// Nested meshes, and the error of the corrected field that they show.
+/// A sentence on nested meshes, with the error of the corrected field that they estimate; `None` where they were not used.
 fn nested(specimen: &Specimen, models: &Models) -> Option<String> {
     let errors = models.on_lattice.correction.discretisation_errors.iter();
     let (most, factor) = errors
@@ -349,7 +349,7 @@ fn nested(specimen: &Specimen, models: &Models) -> Option<String> {
     ))
 }
 
-/// Where the corrector began elsewhere than at the springs' field.
+/// The load factors at which the corrector did not begin at the springs' field.
 fn starts(specimen: &Specimen, models: &Models) -> Option<String> {
     let at = |wanted: Start| {
         let starts = models

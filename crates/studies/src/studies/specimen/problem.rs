@@ -1,4 +1,4 @@
-//! What a specimen's study asks for: the problem, its outline and meshes, what is measured.
+//! The content of a specimen's study: the problem, its outline and meshes, the measured group.
 
 use std::sync::Arc;
 
@@ -41,7 +41,7 @@ impl Refinement {
     pub(super) const MOST_HALVED: usize = 400_000;
 }
 
-/// Which way the springs' field is corrected.
+/// The way in which the springs' field is corrected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
     /// Nested where that is quicker: for corrected fields of a shape that are large.
@@ -61,7 +61,7 @@ impl Method {
     ];
 }
 
-/// Unknowns of a corrected field from which on nobody looks at its multipliers one by one, and nested meshes are quicker.
+/// Unknowns of a corrected field from which on its multipliers are not computed, and nested meshes are quicker.
 pub const LARGE: usize = 20_000;
 
 /// How springs and finite elements are solved where the study does not state it.
@@ -81,7 +81,7 @@ pub struct Specimen {
     pub card: Card,
     /// The cards of the problem's regions, with their names.
     pub regions: Vec<(String, Card)>,
-    /// What its path is numbered by.
+    /// The parameter along its path.
     pub along: Along,
     /// Load factors, ascending unless the material has a memory.
     pub factors: Vec<f64>,
@@ -93,7 +93,7 @@ pub struct Specimen {
     pub elements_newton: NewtonSettings,
     /// The group that is measured.
     pub group: String,
-    /// What the corrected field has to reach.
+    /// The requirements on the corrected field.
     pub tolerances: Tolerances,
     /// How far the finite elements are refined locally; `None` where they have three meshes.
     pub refinement: Option<Refinement>,
@@ -101,11 +101,11 @@ pub struct Specimen {
     pub correction: Method,
     /// How the systems of the finite elements are solved.
     pub linear_solver: LinearSolver,
-    /// What is meshed, and how.
+    /// The outline, and how finely it is meshed.
     pub outline: Outline,
     /// The pictures of its fields.
     pub pictures: Pictures,
-    /// What is measured within the sheet.
+    /// The measurements within the sheet.
     pub measurements: Measurements,
     /// A measured curve of force that is drawn beside the models; `None` where there is none.
     pub measured_curve: Option<MeasuredCurve>,
@@ -120,8 +120,7 @@ impl Specimen {
         self
     }
 
-    /// How far a step of the path is: by the only motion or force that grows along it, or where there are several by the load
-    /// factor.
+    /// A step of the path in words: by the only motion or force that grows along it, or by the load factor where there are several.
     pub fn describe_step(&self, step: usize) -> String {
         let factor = self.factors[step];
         let moved: Vec<&Support> = self
@@ -215,7 +214,7 @@ impl Specimen {
         }
     }
 
-    /// What the study computes, in words.
+    /// A description of what the study computes.
     pub fn describe(&self) -> String {
         let models: Vec<&str> = self.models.iter().map(|kind| kind.style().name).collect();
         format!(
@@ -271,7 +270,7 @@ impl Specimen {
         self.factors.len() * self.models.iter().map(of).sum::<usize>()
     }
 
-    /// What stresses follow from.
+    /// The data that determine its stresses.
     pub fn sheet(&self) -> Sheet<'_> {
         Sheet::elastic(self.problem.laws(), self.problem.thickness)
     }

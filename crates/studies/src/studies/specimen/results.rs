@@ -1,4 +1,4 @@
-//! What a specimen's models find: solutions, own errors, what the study requires.
+//! The results of a specimen's models: solutions, their errors, the requirements of the study.
 
 use super::problem::Specimen;
 use crate::error::Error;

@@ -1,4 +1,4 @@
-//! What a study says, in the report's words and for machines: specimen, supports, loads.
+//! The statements of a study for the report and for machines: specimen, supports, loads.
 
 use serde_json::{Map, Value, json};
 

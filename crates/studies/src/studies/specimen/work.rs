@@ -1,4 +1,4 @@
-//! What is stored in a specimen whose material softens, and what was dissipated.
+//! The stored and dissipated energy of a specimen whose material softens.
 
 use super::problem::Specimen;
 use super::results::models::Models;

@@ -29,7 +29,7 @@ pub fn read_plate(
         ..problem
     };
     if problem.size.iter().any(|side| !side.is_finite()) {
-        return None; // told already
+        return None; // A missing measure was reported when it was read.
     }
     // Differences of second order where the numbers of cells allow them.
     let pairs = DifferenceScheme::Biquadratic.side();

@@ -6,7 +6,7 @@ use crate::finite_element::Element;
 use crate::mass_spring::LatticeSettings;
 use crate::mesh::{CellShape, Grid, Mesh};
 
-/// How often the cells of the finite elements are halved: three meshes tell their own error.
+/// How often the cells of the finite elements are halved: three meshes show their own error.
 pub const HALVINGS: usize = 2;
 
 /// A rectangle between two grips, with the grids of its models.

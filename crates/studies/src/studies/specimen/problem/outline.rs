@@ -69,7 +69,7 @@ impl Outline {
         [0, 1].map(|axis| high[axis] - low[axis])
     }
 
-    /// What so many states on the finest of the finite elements' meshes will use.
+    /// The memory and work of so many states on the finest of the finite elements' meshes.
     pub fn need(&self, states: usize, refinement: Option<Refinement>) -> Need {
         let cells = match self {
             Self::Shape {
@@ -131,7 +131,7 @@ impl Outline {
         }
     }
 
-    /// What it is in words, with its measures.
+    /// A description with its measures.
     pub fn describe(&self) -> String {
         match self {
             Self::Shape { shape, .. } => describe(*shape),

@@ -1,9 +1,9 @@
-//! Shapes in words.
+//! Descriptions of shapes.
 
 use crate::mesh::{Rakes, Shape};
 use crate::units::number;
 
-/// A shape with its measures in words.
+/// A description of a shape with its measures.
 pub fn describe(shape: Shape) -> String {
     match shape {
         Shape::Strip {

@@ -1,4 +1,4 @@
-//! What a study measures within its sheet, as it states it.
+//! The reader of measurements within a sheet.
 
 use crate::document::Section;
 use crate::studies::points::{Region, named_tables, read_point, read_probes};

@@ -11,7 +11,7 @@ use crate::problem::{ClampedPlate, Solution};
 use crate::studies::specimen::problem::PlateGrids;
 
 /// Corrects as many stretches as can be, on a mesh to whose nodes the springs' field is interpolated. Where the springs have no field
-/// the affine stretch takes its place: it has a say in the multipliers, and in where the direct method begins.
+/// the affine stretch takes its place, on which the multipliers and the start of the direct method depend.
 ///
 /// # Errors
 /// Any but [`Error::Solve`], which is an end.

@@ -1,4 +1,4 @@
-//! The finite elements that a specimen's other models are held to, and their own error.
+//! The finite elements with which a specimen's other models are compared, and their own error.
 
 use super::lattice::OnLattice;
 use super::measured::Measured;
@@ -17,7 +17,7 @@ use crate::studies::specimen::problem::Specimen;
 pub struct Reference {
     /// On the finest mesh.
     pub finest: Solution,
-    /// What is compared of all models.
+    /// The quantity that is compared in all models.
     pub measured: Measured,
     /// One a load factor; `None` where the tangent of that state gives none.
     pub estimates: Vec<Option<ErrorEstimate>>,
@@ -29,7 +29,7 @@ pub struct Reference {
     pub(super) rounds: Vec<Round>,
     /// Of local refinement with all cells of the last mesh halved, where these are not too many.
     pub(super) all_halved: Option<Solution>,
-    /// What the curves that a file's edges stand for change at each load factor; `None` where there are no such edges.
+    /// The changes by the curves that a file's edges approximate, at each load factor; `None` where there are no such edges.
     pub(super) outline: Option<Vec<OutlineChange>>,
     /// The displacement's own error at each load factor without that of the outline, in relative L2 in %: at the nodes of the corrected field, and at all of
     /// the finest mesh.
@@ -37,7 +37,7 @@ pub struct Reference {
     pub(super) of_all_nodes: Vec<Option<f64>>,
 }
 
-/// What the curves that a file's edges stand for change at a load factor.
+/// The changes by the curves that a file's edges approximate, at a load factor.
 pub struct OutlineChange {
     /// Of what is measured, in its unit.
     pub measured: f64,
@@ -110,7 +110,7 @@ impl Reference {
         }
     }
 
-    /// How the finite elements of a specimen become better.
+    /// How the finite elements of a specimen become more accurate.
     pub fn remedy(&self, specimen: &Specimen) -> &'static str {
         let (problem, mesh) = (&specimen.problem, &self.finest.mesh);
         if !problem.forces_on_points(mesh).is_empty() || !problem.moved_points(mesh).is_empty() {
@@ -161,7 +161,7 @@ impl Reference {
             .is_some()
     }
 
-    /// What the curves that a file's edges stand for change in what is measured at a load factor, in %.
+    /// The change of what is measured by the curves that a file's edges approximate, at a load factor in %.
     fn outline_percent(&self, step: usize) -> Option<f64> {
         if self.is_negligible(step) {
             return Some(0.0);
@@ -184,7 +184,7 @@ impl Reference {
         changes.any(is_most)
     }
 
-    /// What is said about a file's outline.
+    /// A note on a file's outline.
     pub(super) fn outline_note(&self) -> Option<Block> {
         let steps = 0..self.outline.as_ref()?.len();
         let percents = steps.filter_map(|step| self.outline_percent(step));
@@ -223,8 +223,8 @@ impl Reference {
         all?.try_into().ok()
     }
 
-    /// An error by the distance of the two finest meshes, which re-entrant corners of the finest one let fall slowly, however the coarse
-    /// ones came nearer.
+    /// An error that is at least the one which the distance of the two finest meshes gives with the low order of convergence at re-entrant corners,
+    /// whatever order the coarse meshes show.
     fn beside_corners(&self, error: f64, last: f64) -> f64 {
         match self.finest.mesh.largest_angle() {
             angle if angle > REENTRANT => {
@@ -256,9 +256,9 @@ impl Reference {
         self.with_outline(step, *self.displacement.get(step)?)
     }
 
-    /// The same of the field as a whole. At the nodes of the corrected field, which several meshes have, quadratic elements are more exact than
-    /// elsewhere, and at all of the finest mesh those of a coarser one tell too high an order where a corner's error is left: the larger of
-    /// both.
+    /// The same of the field as a whole: the larger of the errors at the nodes of the corrected field, which are nodes of several meshes, where
+    /// quadratic elements are more exact than elsewhere, and at all nodes of the finest mesh, where coarser meshes show too high an order beside
+    /// corners.
     pub fn field_percent(&self, step: usize) -> Option<f64> {
         let on_lattice = (*self.displacement.get(step)?)?;
         let of_all = (*self.of_all_nodes.get(step)?)?;
@@ -303,30 +303,30 @@ impl Reference {
         (0..self.finest.reached()).map(error).collect()
     }
 
-    /// By the distances in % of meshes a quarter, half and as fine, see [`of_distances`], times [`Self::unseen`], with an order of ½ at
-    /// least.
+    /// The error from the distances in % of meshes a quarter, half and as fine, see [`of_distances`], times [`Self::underestimation`]; at most that
+    /// of an order of ½.
     fn by_coarser(&self, step: usize, before: f64, last: f64) -> f64 {
         let by_meshes = self.beside_corners(of_distances(before, last).0, last);
         let most = (last / (LOWEST_ORDER.exp2() - 1.0)).max(by_meshes);
-        (by_meshes * self.unseen(step)).min(most)
+        (by_meshes * self.underestimation(step)).min(most)
     }
 
-    /// By the distance in % of the mesh with all cells halved, which leaves between 2⁻ᵖ⁻¹ of the error, where the solution is smooth, and
-    /// a half, where a corner's is left:
+    /// The error from the distance in % to the mesh with all cells halved, whose own error is between 2⁻ᵖ⁻¹ of it, where the solution is smooth, and
+    /// a half, beside corners:
     ///
     /// ```text
     /// e = ‖u½ − u‖/(1 − 2⁻ᵖ)          p: degree of the elements
     /// ```
     ///
-    /// Two meshes of local refinement tell little of it: most of their cells are the same.
+    /// Two meshes of local refinement do not show it: most of their cells are the same.
     fn by_halving(&self, distance: f64) -> f64 {
         let remainder = 0.5_f64.powi(self.finest.mesh.shape(0).degree() as i32);
         distance / (1.0 - remainder)
     }
 
-    /// How many times larger recovery tells the error of what is measured than three meshes do, 1 at least: coarse cells tell too high an order
-    /// where a support ends within an edge, of the displacement as of the force.
-    fn unseen(&self, step: usize) -> f64 {
+    /// The error of what is measured by recovery over that by three meshes, at least 1: where a support ends within an edge, coarse cells show too
+    /// high an order, of the displacement as well as of the force.
+    fn underestimation(&self, step: usize) -> f64 {
         if self.on_grids && self.converge(step) {
             return 1.0;
         }

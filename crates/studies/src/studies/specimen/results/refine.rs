@@ -1,4 +1,4 @@
-//! How the finite elements of a specimen are found: on three meshes, each twice as fine as the one before, or by local
+//! The solution of a specimen's finite elements: on three meshes, each twice as fine as the one before, or by local
 //! refinement.
 
 use super::end::{End, Run, last_groups};
@@ -22,7 +22,7 @@ const SHARE: f64 = 0.5;
 /// Cells up to which the finite elements are refined once more where they are too coarse to judge.
 const MOST_CELLS: usize = 30_000;
 
-/// Begin of the names of the files of the meshes, from coarse to fine.
+/// The beginnings of the names of the meshes' files, from coarse to fine.
 const FILES: [&str; 3] = ["finite_element_coarse", "finite_element_middle", FILE];
 const FILE: &str = FINITE_ELEMENTS.key;
 
@@ -107,7 +107,7 @@ impl Reference {
     }
 }
 
-/// What local refinement has made.
+/// The meshes of local refinement.
 struct Refined {
     /// The cells of the last mesh.
     triangles: Mesh,
@@ -177,7 +177,7 @@ pub fn finest(run: &mut Run) -> Result<Solution, Error> {
     Ok(finest)
 }
 
-/// The finite elements on a mesh, with first guesses of a coarser one; `file` is what their files begin with.
+/// The finite elements on a mesh, with first guesses of a coarser one; `file` is the beginning of the names of their files.
 fn on_mesh(
     run: &mut Run,
     mesh: &Mesh,
@@ -205,7 +205,7 @@ fn on_mesh(
     Ok(solve(run, &model, file, settings))
 }
 
-/// The quarter of a plate's finite elements, by which they are solved sooner; `None` where the specimen is none that stays symmetric.
+/// The quarter of a plate's finite elements, which is quicker to solve; `None` where the specimen is not a plate that stays symmetric.
 fn quarter(specimen: &Specimen, mesh: &Mesh) -> Option<Quarter> {
     let (plate, _) = specimen.plate()?;
     Quarter::of(&plate, mesh, specimen.linear_solver)
@@ -240,7 +240,7 @@ fn measured(specimen: &Specimen, solution: &Solution, ends: &[End]) -> Measured 
     }
 }
 
-/// What the curves that a file's edges stand for change at each load factor; `None` where there are no such edges.
+/// The changes by the curves that a file's edges approximate, at each load factor; `None` where there are no such edges.
 fn outline_changes(
     run: &Run,
     what: &Measured,
@@ -288,7 +288,7 @@ fn indicators(cells: usize, estimates: &[Option<ErrorEstimate>]) -> Vec<f64> {
     sums
 }
 
-/// The estimates that lack no point.
+/// The estimates that cover all points.
 fn complete(estimates: Vec<Option<ErrorEstimate>>) -> Vec<Option<ErrorEstimate>> {
     let complete = |one: Option<ErrorEstimate>| one.filter(|estimate| estimate.energy.is_complete);
     estimates.into_iter().map(complete).collect()
@@ -301,7 +301,7 @@ fn estimates(
     measured: &Measured,
 ) -> Result<Vec<Option<ErrorEstimate>>, Error> {
     if specimen.problem.laws().soften() {
-        // Recovery knows no history.
+        // Recovery does not account for a history.
         return Ok(vec![None; solution.reached()]);
     }
     let mesh = &solution.mesh;

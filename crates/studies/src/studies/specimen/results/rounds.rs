@@ -6,7 +6,7 @@ use crate::results::{Block, Check, Table, Wanted, or_dash};
 use crate::studies::specimen::problem::Specimen;
 
 impl Reference {
-    /// Whether local refinement has come as far as the study wants.
+    /// Whether local refinement has reached the study's goal; `None` without local refinement.
     pub fn goal_check(&self, specimen: &Specimen) -> Option<Check> {
         let (goal, last) = (specimen.refinement?, self.rounds.last()?);
         let mut quantity = "finite elements' own error of the field, energy norm".to_owned();
@@ -51,7 +51,7 @@ impl Reference {
     }
 }
 
-/// What an error that recovery does not tell comes to.
+/// The judgement of an error that recovery does not estimate.
 fn unknown_energy() -> Judgement {
     Judgement::CannotBeJudged {
         reason: "recovery gives no error estimate: no load factor is reached, or between the integration points the field folds or exceeds the limit \
