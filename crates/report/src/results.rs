@@ -272,6 +272,12 @@ pub fn or_dash(value: Option<f64>, write: impl FnOnce(f64) -> String) -> String 
     value.map_or("–".to_owned(), write)
 }
 
+/// ux, uy of node after node of a field that is a function of the position at rest.
+#[cfg(test)]
+fn displacements(mesh: &crate::mesh::Mesh, field: impl Fn([f64; 2]) -> [f64; 2]) -> Vec<f64> {
+    mesh.nodes.iter().flat_map(|node| field(*node)).collect()
+}
+
 /// A limit as a person would write it.
 pub fn limit(value: f64) -> String {
     match value.abs() {

@@ -38,6 +38,7 @@ pub struct Check {
     pub own_error: Option<f64>,
     judgement: Option<Judgement>,
     is_end: bool,
+    /// Whether it has neither a value nor a limit.
     is_fault: bool,
 }
 
@@ -82,11 +83,6 @@ impl Check {
     /// Whether it is the end of a model.
     pub fn is_end(&self) -> bool {
         self.is_end
-    }
-
-    /// Whether it is a fault, which has neither a value nor a limit.
-    pub fn is_fault(&self) -> bool {
-        self.is_fault
     }
 
     /// Adds the judgement of a comparison with a reference that has an error of its own.
@@ -298,11 +294,11 @@ mod tests {
     #[test]
     fn a_path_that_ended_has_neither_a_value_nor_a_limit() {
         let end = Check::end("springs ended");
-        assert!(end.is_fault() && !end.passed());
+        assert!(end.is_fault && !end.passed());
         assert_eq!(end.wanted(), "–");
         let check = Check::new("force", "%", Wanted::AtMost(0.5), "study", f64::NAN);
         assert_eq!(
-            (check.is_fault(), check.wanted()),
+            (check.is_fault, check.wanted()),
             (false, "≤ 0.5".to_owned())
         );
     }

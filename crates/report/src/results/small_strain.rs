@@ -61,6 +61,7 @@ mod tests {
     use super::*;
     use crate::material::{LinearElastic, NeoHooke, PlaneState};
     use crate::mesh::CellShape;
+    use crate::results::displacements;
 
     fn reason(law: &dyn HyperelasticLaw, mesh: &Mesh, displacement: &[f64]) -> Option<String> {
         let cells: Vec<usize> = (0..mesh.cell_count()).collect();
@@ -70,9 +71,6 @@ mod tests {
     #[test]
     fn large_strains_and_large_rotations_are_told_of_linear_elasticity_alone() {
         let mesh = Mesh::plate([4.0, 1.0], [4, 2], CellShape::Quad4);
-        let field = |f: &dyn Fn(f64, f64) -> [f64; 2]| -> Vec<f64> {
-            mesh.nodes.iter().flat_map(|[x, y]| f(*x, *y)).collect()
-        };
         let linear = LinearElastic {
             shear_modulus: 0.05,
             lame_modulus: 0.1,
@@ -80,9 +78,11 @@ mod tests {
         };
         let turned = |angle: f64| {
             let (sine, cosine) = angle.sin_cos();
-            field(&move |x, y| [(cosine - 1.0) * x - sine * y, sine * x + (cosine - 1.0) * y])
+            displacements(&mesh, |[x, y]| {
+                [(cosine - 1.0) * x - sine * y, sine * x + (cosine - 1.0) * y]
+            })
         };
-        let pulled = |strain: f64| field(&move |x, _| [strain * x, 0.0]);
+        let pulled = |strain: f64| displacements(&mesh, |[x, _]| [strain * x, 0.0]);
         assert_eq!(reason(&linear, &mesh, &pulled(0.04)), None);
         assert_eq!(reason(&linear, &mesh, &turned(-0.09)), None);
         let message = reason(&linear, &mesh, &pulled(0.4)).unwrap();

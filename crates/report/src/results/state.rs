@@ -246,6 +246,7 @@ mod tests {
     use crate::material::volume::bulk_modulus;
     use crate::material::{NeoHooke, PlaneState, SoftenedLaw, Softening, Volume, VolumeEnergy};
     use crate::mesh::{CellShape, Shape};
+    use crate::results::displacements;
 
     const LAW: NeoHooke = NeoHooke { c10: 0.5 };
     const NONE: [f64; 4] = [0.0; 4];
@@ -279,10 +280,7 @@ mod tests {
         let stress = along * along - 1.0 / along;
         for (name, kind) in CellShape::NAMES {
             let mesh = Shape::Strip { size: [3.0, 1.0] }.mesh(2, kind);
-            let moved = mesh.nodes.iter();
-            let u: Vec<f64> = moved
-                .flat_map(|[x, y]| [(along - 1.0) * x, (across - 1.0) * y])
-                .collect();
+            let u = displacements(&mesh, |[x, y]| [(along - 1.0) * x, (across - 1.0) * y]);
             let [nodal, cells] =
                 [nodal_states, cell_states].map(|of| of(&laws(), &mesh, &[&u], &[]));
             assert_eq!(
@@ -358,11 +356,7 @@ mod tests {
     #[test]
     fn the_mean_at_a_node_is_exact_in_the_middle_of_equal_cells() {
         let mesh = Mesh::plate([4.0, 4.0], [4, 4], CellShape::Quad4);
-        let u: Vec<f64> = mesh
-            .nodes
-            .iter()
-            .flat_map(|[x, _]| [0.02 * x * x, 0.0])
-            .collect();
+        let u = displacements(&mesh, |[x, _]| [0.02 * x * x, 0.0]);
         let states = nodal_states(&laws(), &mesh, &[&u], &[]);
         let inside = mesh.nodes.iter().zip(&states);
         for ([x, _], state) in inside.filter(|([x, _], _)| *x > 0.5 && *x < 3.5) {

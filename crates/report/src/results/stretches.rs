@@ -95,6 +95,7 @@ mod tests {
     use crate::material::body::BodySheet;
     use crate::material::{FoamTerm, OgdenHill};
     use crate::mesh::CellShape;
+    use crate::results::displacements;
     use std::sync::Arc;
 
     #[test]
@@ -103,10 +104,7 @@ mod tests {
         let cells: Vec<usize> = (0..mesh.cell_count()).collect();
         let card = |range| Card::of_law("gel", Arc::new(NeoHooke { c10: 0.05 }), range);
         let of = |range, [along, across]: [f64; 2]| {
-            let positions = mesh.nodes.iter();
-            let u: Vec<f64> = positions
-                .flat_map(|[x, y]| [(along - 1.0) * x, (across - 1.0) * y])
-                .collect();
+            let u = displacements(&mesh, |[x, y]| [(along - 1.0) * x, (across - 1.0) * y]);
             Stretches::new(&card(range), (&mesh, &cells), &u)
         };
         let tension = [1.0, 1.21];
@@ -134,18 +132,10 @@ mod tests {
         let foam = OgdenHill { terms: vec![foam] };
         let foam = Arc::new(BodySheet::new(foam, PlaneState::Stress));
         let foam = Card::of_law("foam", foam, [0.4, 1.0]);
-        let pulled: Vec<f64> = mesh
-            .nodes
-            .iter()
-            .flat_map(|[x, _]| [0.5 * x, 0.0])
-            .collect();
+        let pulled = displacements(&mesh, |[x, _]| [0.5 * x, 0.0]);
         assert_eq!(Stretches::new(&foam, (&mesh, &cells), &pulled).share, 1.0);
         // A turn stretches nothing.
-        let turned: Vec<f64> = mesh
-            .nodes
-            .iter()
-            .flat_map(|[x, y]| [-y - x, x - y])
-            .collect();
+        let turned = displacements(&mesh, |[x, y]| [-y - x, x - y]);
         let rotated = Stretches::new(&card(tension), (&mesh, &cells), &turned);
         assert!(rotated.share == 0.0 && (rotated.largest - 1.0).abs() < 1e-12);
     }

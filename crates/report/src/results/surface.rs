@@ -230,6 +230,7 @@ pub fn edge_lines(edges: &[Vec<usize>], positions: &[[f64; 2]]) -> Vec<Vec<[f64;
 mod tests {
     use super::*;
     use crate::mesh::Shape;
+    use crate::results::displacements;
 
     fn area(surface: &Surface) -> f64 {
         let of = |triangle: &[u32; 3]| {
@@ -244,11 +245,7 @@ mod tests {
         let shape = Shape::Strip { size: [3.0, 1.0] };
         for (name, kind) in CellShape::NAMES {
             let mesh = shape.mesh(2, kind);
-            let u: Vec<f64> = mesh
-                .nodes
-                .iter()
-                .flat_map(|[x, _]| [0.5 * x, 0.0])
-                .collect();
+            let u = displacements(&mesh, |[x, _]| [0.5 * x, 0.0]);
             let surface = Surface::new(&mesh, &u);
             assert!((area(&surface) - 4.5).abs() < 1e-12, "{name}");
             let doubled = Surface::values(&mesh, &|node| 2.0 * mesh.nodes[node][1]);

@@ -93,16 +93,14 @@ mod tests {
     use crate::material::NeoHooke;
     use crate::material::viscosity::Relaxation;
     use crate::mesh::CellShape;
+    use crate::results::displacements;
 
     const LAW: NeoHooke = NeoHooke { c10: 0.05 };
 
     /// ux, uy of a strip that is stretched without a stress across.
     fn stretched(mesh: &Mesh, stretch: f64) -> Vec<f64> {
         let across = stretch.powf(-0.5) - 1.0;
-        let nodes = mesh.nodes.iter();
-        nodes
-            .flat_map(|[x, y]| [(stretch - 1.0) * x, across * y])
-            .collect()
+        displacements(mesh, |[x, y]| [(stretch - 1.0) * x, across * y])
     }
 
     /// A sudden stretch, S(t) = S∞ (1 + Σ βᵢ e^(−t/τᵢ)), in cells and at nodes.
@@ -151,8 +149,7 @@ mod tests {
         let mesh = Mesh::plate([4.0, 2.0], [4, 2], CellShape::Quad4);
         let (u, rate) = (stretched(&mesh, 1.2), 0.3);
         let across = -0.5 * 1.2_f64.powf(-1.5) * rate;
-        let nodes = mesh.nodes.iter();
-        let v: Vec<f64> = nodes.flat_map(|[x, y]| [rate * x, across * y]).collect();
+        let v = displacements(&mesh, |[x, y]| [rate * x, across * y]);
         let stresses = ViscousStress::over_time(&LAW, &material, &mesh, &[0.0], &[[&u, &v]]);
         let expected = material.newtonian_tension(1.2, rate)[0];
         assert!((stresses[0].in_cells[0][0] - expected).abs() < 1e-12);

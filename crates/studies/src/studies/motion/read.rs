@@ -63,7 +63,9 @@ pub fn read(root: &Section, folder: &Path) -> Option<MovingSheet> {
     let time = read_time(&in_time);
     let motion = time.as_ref().zip(drive.as_ref());
     check_times(root, &in_time, (motion, along), &viscosity, &forces);
-    let is_corrected = read_corrector(&root.section("corrector"));
+    let corrector = root.section("corrector");
+    let is_corrected = corrector.flag("enabled");
+    corrector.unknown_keys();
     let probes = read_probes(root, region.as_ref());
     let tolerances = read_tolerances(&root.section("tolerances"), drive.as_ref());
     let pictures = Pictures::read(&root.section("pictures"), "times", Dimension::Time, &[]);
@@ -90,13 +92,6 @@ pub fn read(root: &Section, folder: &Path) -> Option<MovingSheet> {
     warn_of_rest(root, start, &sheet);
     check_release(root, &sheet);
     affords(&in_time, &sheet).then_some(sheet)
-}
-
-/// Whether the springs' motion is corrected.
-fn read_corrector(section: &Section) -> bool {
-    let is_corrected = section.flag("enabled");
-    section.unknown_keys();
-    is_corrected
 }
 
 /// Whether a motion is not too large; that it is, is recorded.
@@ -142,7 +137,16 @@ fn read_material(section: &Section, folder: &Path) -> (Option<Card>, f64, Viscou
         (false, Some(card)) => card.viscosity.clone(),
         (false, None) => ViscousMaterial::default(),
     };
-    if card.as_ref().is_some_and(|card| card.law_name == SWELLING) {
+    if let Some(card) = &card {
+        check_card(section, card, &viscosity);
+    }
+    section.unknown_keys();
+    (card, density, viscosity)
+}
+
+/// Whether a card is one for motions; faults and warnings are recorded.
+fn check_card(section: &Section, card: &Card, viscosity: &ViscousMaterial) {
+    if card.law_name == SWELLING {
         section.warning(
             "card",
             "this gel is in equilibrium with its solvent at every instant, which takes a time of about h²/D (hours for a millimetre): in a motion it \
@@ -150,25 +154,16 @@ fn read_material(section: &Section, folder: &Path) -> (Option<Card>, f64, Viscou
             "take an incompressible card with the modulus of the swollen gel, as `gelbench materials show` reports it",
         );
     }
-    if !viscosity.is_none()
-        && card
-            .as_ref()
-            .is_some_and(|card| card.bulk_modulus().is_some())
-    {
+    if !viscosity.is_none() && card.bulk_modulus().is_some() {
         let hint = "leave out the viscosity, or take an incompressible card";
         let message =
             "the viscous stress is that of an incompressible sheet, and this card is compressible";
         section.fault("card", message, hint);
     }
-    if card
-        .as_ref()
-        .is_some_and(|card| card.law.softening().is_some())
-    {
+    if card.law.softening().is_some() {
         let message = "this card softens, and a motion in time has no memory of the largest load";
         section.fault("card", message, NO_SOFTENING_ADVICE);
     }
-    section.unknown_keys();
-    (card, density, viscosity)
 }
 
 /// The load factor, or stretch, at the start.

@@ -51,7 +51,9 @@ pub fn read_with(root: &Section, folder: &Path, import: &Import) -> Option<Speci
     let linear_solver = section.choice("method", &LinearSolver::NAMES);
     let refinement = read_refinement(&section, element);
     section.unknown_keys();
-    let correction = read_correction(&root.section("corrector"));
+    let corrector = root.section("corrector");
+    let correction = corrector.choice("method", &Method::NAMES);
+    corrector.unknown_keys();
     let is_plane_strain = materials
         .plane_state()
         .map(|state| state == PlaneState::Strain);
@@ -214,12 +216,6 @@ impl<'a> StatedSheet<'a> {
     }
 }
 
-fn read_correction(section: &Section) -> Option<Method> {
-    let method = section.choice("method", &Method::NAMES);
-    section.unknown_keys();
-    method
-}
-
 /// Warns where a file's cells make other finite elements than the study says.
 fn check_elements(root: &Section, outline: &Outline, mesh: &Mesh) {
     let section = root.section("finite_element");
@@ -335,18 +331,21 @@ fn read_refinement(section: &Section, element: Option<CellShape>) -> Option<Refi
 /// A force on nodes without edges is another one on a mesh that is refined locally, and a material that softens has no error estimate to
 /// refine by.
 fn check_refinement(root: &Section, specimen: &Specimen, mesh: &Mesh) {
-    if specimen.refinement.is_some() && specimen.problem.laws().soften() {
+    if specimen.refinement.is_none() {
+        return;
+    }
+    if specimen.problem.laws().soften() {
         let message = "this card softens, and the error estimate that refines the mesh has no memory of the largest load";
         let hint = "leave out `adaptive`, or the card's `[softening]`";
         root.section("finite_element")
             .fault("adaptive", message, hint);
     }
-    if specimen.refinement.is_some() && !specimen.problem.moved_points(mesh).is_empty() {
+    if !specimen.problem.moved_points(mesh).is_empty() {
         let message = "in the limit of fine meshes single nodes move without force, so that local refinement around them never ends";
         let hint = "move a group with edges, lines or an area, or leave out `adaptive`";
         root.fault("support", message, hint);
     }
-    if specimen.refinement.is_some() && !specimen.problem.forces_on_points(mesh).is_empty() {
+    if !specimen.problem.forces_on_points(mesh).is_empty() {
         let message = "under a force on single nodes the displacement diverges on finer meshes, so that local refinement around them never ends";
         let hint = "put it on a group with edges, lines or an area, or leave out `adaptive`";
         root.fault("load", message, hint);
