@@ -142,13 +142,13 @@ impl Headline<'_> {
         self.steps.iter().flat_map(|(_, groups)| groups)
     }
 
-    /// Whether a quantity of some states is not negligible beside its largest size.
-    fn is_significant<'b>(
-        column: Column,
-        mut states: impl Iterator<Item = &'b GroupState>,
-        size: f64,
-    ) -> bool {
-        states.any(|state| column.1(state).abs() > NEGLIGIBLE * size)
+    /// Whether one of some quantities of a group is in some step not negligible beside its largest size.
+    fn is_significant(&self, columns: &[Column], group: usize, size: f64) -> bool {
+        let mut states = self.steps.iter().map(|(_, groups)| &groups[group]);
+        states.any(|state| {
+            let mut values = columns.iter().map(|(_, value)| value(state));
+            values.any(|value| value.abs() > NEGLIGIBLE * size)
+        })
     }
 
     /// The largest displacement in mm, the largest force in N, and the moment of that force over the sheet's larger side in N·mm; at least so
@@ -177,7 +177,10 @@ impl Headline<'_> {
             .chain(forces)
             .chain([(MOMENT, moment)]);
         let mut columns: Vec<_> = all
-            .filter(|(column, size)| Self::is_significant(*column, self.states(), *size))
+            .filter(|(column, size)| {
+                let mut groups = 0..self.groups.len();
+                groups.any(|group| self.is_significant(&[*column], group, *size))
+            })
             .collect();
         if force == 0.0 {
             columns.push(forces[0]);
@@ -189,23 +192,13 @@ impl Headline<'_> {
     /// of the other with the opposite sign.
     fn listed(&self) -> Vec<usize> {
         let [displacement, force, moment] = self.sizes();
-        let of = |group: usize| self.steps.iter().map(move |(_, groups)| &groups[group]);
-        let pushes = |group: &usize| {
-            FORCES
-                .iter()
-                .any(|column| Self::is_significant(*column, of(*group), force))
-        };
-        let carries =
-            |group: &usize| pushes(group) || Self::is_significant(MOMENT, of(*group), moment);
-        let moves = |group: &usize| {
-            DISPLACEMENTS
-                .iter()
-                .any(|column| Self::is_significant(*column, of(*group), displacement))
-        };
-        let has_moments = Self::is_significant(MOMENT, self.states(), moment);
+        let moves = |group: &usize| self.is_significant(&DISPLACEMENTS, *group, displacement);
+        let turns = |group: &usize| self.is_significant(&[MOMENT], *group, moment);
+        let carries = |group: &usize| self.is_significant(&FORCES, *group, force) || turns(group);
         let all = 0..self.groups.len();
         let carrying: Vec<usize> = all.clone().filter(carries).collect();
-        let is_pair = !has_moments && carrying.len() == 2 && carrying.iter().any(moves);
+        let is_pair =
+            carrying.len() == 2 && carrying.iter().any(moves) && !carrying.iter().any(turns);
         all.filter(|group| moves(group) || carries(group) && !is_pair)
             .collect()
     }

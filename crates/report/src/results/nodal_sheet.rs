@@ -52,12 +52,11 @@ impl<'a> NodalSheet<'a> {
                 displacement: Cow::Borrowed(fields.last().copied().unwrap_or_default()),
             };
         };
-        let mut cut_fields: Vec<Vec<f64>> = fields.iter().map(|field| cut.field(field)).collect();
-        let fields: Vec<&[f64]> = cut_fields.iter().map(Vec::as_slice).collect();
+        let mut fields: Vec<Vec<f64>> = fields.iter().map(|field| cut.field(field)).collect();
         Self {
             states: states_within_parts(&laws, &cut.mesh, &fields),
             mesh: Cow::Owned(cut.mesh),
-            displacement: Cow::Owned(cut_fields.pop().unwrap_or_default()),
+            displacement: Cow::Owned(fields.pop().unwrap_or_default()),
         }
     }
 }

@@ -166,7 +166,6 @@ pub fn nodal_states(
         return states(law, fields, viscous, |field| nodal_gradients(mesh, field));
     };
     let fields: Vec<Vec<f64>> = fields.iter().map(|field| cut.field(field)).collect();
-    let fields: Vec<&[f64]> = fields.iter().map(Vec::as_slice).collect();
     let on_sides = states_within_parts(laws, &cut.mesh, &fields);
     let mut at_nodes = vec![Vec::new(); mesh.nodes.len()];
     for (node, state) in cut.originals.iter().zip(on_sides) {
@@ -182,8 +181,9 @@ pub fn nodal_states(
 pub(super) fn states_within_parts(
     laws: &CellLaws,
     mesh: &Mesh,
-    fields: &[&[f64]],
+    fields: &[Vec<f64>],
 ) -> Vec<LocalState> {
+    let fields: Vec<&[f64]> = fields.iter().map(Vec::as_slice).collect();
     let mut cell_of = vec![0; mesh.nodes.len()];
     for cell in 0..mesh.cell_count() {
         mesh.cell(cell)
@@ -191,7 +191,7 @@ pub(super) fn states_within_parts(
             .for_each(|node| cell_of[*node] = cell);
     }
     let law = |node: usize| laws.of(cell_of[node]);
-    states(law, fields, &[], |field| nodal_gradients(mesh, field))
+    states(law, &fields, &[], |field| nodal_gradients(mesh, field))
 }
 
 fn states<'a>(

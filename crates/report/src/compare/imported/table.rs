@@ -80,11 +80,8 @@ pub fn read(table: &Table, settings: &ImportSettings) -> Result<Points, Error> {
     };
     let mut lengths = Vec::new();
     for names in LENGTHS {
-        lengths.push(length(
-            table,
-            columns::required(table, names, RENAME)?,
-            units,
-        )?);
+        let matched = columns::required(table, names, RENAME)?;
+        lengths.push(length(table, matched, units)?);
     }
     let choices = choices(table, settings)?;
     let read = lengths.iter().map(|(column, _)| *column);
@@ -126,17 +123,14 @@ pub fn read(table: &Table, settings: &ImportSettings) -> Result<Points, Error> {
 fn check_unique(file: &str, mut all: Vec<[[f64; 2]; 2]>) -> Result<(), Error> {
     all.sort_by(|[a, _], [b, _]| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])));
     let mut pairs = all.windows(2);
-    match pairs.find(|pair| pair[0][0] == pair[1][0] && pair[0][1] != pair[1][1]) {
-        Some(pair) => {
-            let ([[x, y], [ux, uy]], [_, [vx, vy]]) = (pair[0], pair[1]);
-            let message = format!(
-                "{file} has two displacements at ({x}, {y}) mm: ({ux}, {uy}) and ({vx}, {vy}) mm"
-            );
-            let hint = "leave the rows of one load factor and of one measurement, or add a column `load_factor` or `time`";
-            Err(Error::input(message, hint))
-        }
-        None => Ok(()),
-    }
+    let differs = |pair: &&[[[f64; 2]; 2]]| pair[0][0] == pair[1][0] && pair[0][1] != pair[1][1];
+    let Some(&[[[x, y], [ux, uy]], [_, [vx, vy]]]) = pairs.find(differs) else {
+        return Ok(());
+    };
+    let message =
+        format!("{file} has two displacements at ({x}, {y}) mm: ({ux}, {uy}) and ({vx}, {vy}) mm");
+    let hint = "leave the rows of one load factor and of one measurement, or add a column `load_factor` or `time`";
+    Err(Error::input(message, hint))
 }
 
 /// The columns that choose rows.
