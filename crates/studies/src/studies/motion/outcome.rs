@@ -29,22 +29,8 @@ pub fn outcome(
     own_error: Option<&DiscretisationError>,
 ) -> Outcome {
     let deviations = Deviations::all(sheet, motions);
-    let seconds = motions.models().map(|model| {
-        let name = model.kind.style().name.to_owned();
-        (name, model.seconds)
-    });
-    let mut blocks = vec![
-        Block::Paragraph(introduction(sheet, &motions.elements)),
-        summary(motions.models()),
-        Block::Paragraph(motions.correction.note.clone()),
-        Block::Paragraph(compared(sheet, &deviations, own_error)),
-        Block::Paragraph(format!(
-            "Deviation at some instants, relative to the largest displacement field of the finite elements, and force of the {}:",
-            sheet.measured_name()
-        )),
-        in_time(sheet, motions, &deviations),
-    ];
-    blocks.extend(statement::blocks(sheet));
+    let seconds = motions.models();
+    let seconds = seconds.map(|model| (model.kind.style().name.to_owned(), model.seconds));
     let mut files = tables(sheet, motions);
     files.extend(springs_table(sheet, motions));
     let (series, times) = (motions.series(), motions.times());
@@ -57,7 +43,7 @@ pub fn outcome(
     let mut outcome = Outcome {
         headline: headline(sheet, motions, reference),
         checks: checks(sheet, motions, &deviations, own_error),
-        blocks,
+        blocks: blocks(sheet, motions, &deviations, own_error),
         problem: statement::json(sheet, own_error),
         material: Some(Material::from(&sheet.specimen.card)),
         along: "time",
@@ -85,6 +71,28 @@ pub fn outcome(
         outcome.ended(end);
     }
     outcome
+}
+
+/// The parts of the report after its headline.
+fn blocks(
+    sheet: &MovingSheet,
+    motions: &Motions,
+    deviations: &(Deviations, Option<Deviations>),
+    own_error: Option<&DiscretisationError>,
+) -> Vec<Block> {
+    let mut blocks = vec![
+        Block::Paragraph(introduction(sheet, &motions.elements)),
+        summary(motions.models()),
+        Block::Paragraph(motions.correction.note.clone()),
+        Block::Paragraph(compared(sheet, deviations, own_error)),
+        Block::Paragraph(format!(
+            "Deviation at some instants, relative to the largest displacement field of the finite elements, and force of the {}:",
+            sheet.measured_name()
+        )),
+        in_time(sheet, motions, deviations),
+    ];
+    blocks.extend(statement::blocks(sheet));
+    blocks
 }
 
 /// The figures of every instant for machines.

@@ -91,7 +91,7 @@ impl<'a> MeasuredFields<'a> {
             .iter()
             .chain(coordinates)
             .map(|head| (*head).to_owned());
-        let head = begin.chain(values.iter().cloned()).collect();
+        let head: Vec<String> = begin.chain(values.iter().cloned()).collect();
         let text = (!rows.is_empty()).then(|| write_records([head].into_iter().chain(rows)))?;
         Some((format!("{name}s.csv"), Content::Text(text)))
     }
