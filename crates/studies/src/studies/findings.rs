@@ -3,6 +3,7 @@
 use nalgebra::Vector4;
 
 use super::ModelKind;
+use super::regions::quoted;
 use super::series::{ModelSeries, ModelState};
 use super::specimen::forces;
 use super::specimen::problem::Specimen;
@@ -221,12 +222,6 @@ fn moved_points(examined: Examined) -> Option<Found> {
          and own errors are meaningless"
     );
     Some((message, "Move edges, a line or an area.".to_owned()))
-}
-
-/// Names of groups in words; `None` where there are none.
-fn quoted(names: &[&str]) -> Option<String> {
-    let quoted: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
-    (!quoted.is_empty()).then(|| quoted.join(", "))
 }
 
 /// States that may be one of several: reached through tangents that are not positive definite, or by a snap to another branch.

@@ -97,6 +97,12 @@ impl<'a> SheetCards<'a> {
     }
 }
 
+/// Names in backquotes, separated by commas; `None` where there are none.
+pub fn quoted(names: &[&str]) -> Option<String> {
+    let quoted: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
+    (!quoted.is_empty()).then(|| quoted.join(", "))
+}
+
 /// The names of the regions of a mesh: groups of some of its cells.
 pub fn regions_of(mesh: &Mesh) -> Vec<&str> {
     let groups = mesh.groups().iter();
@@ -110,8 +116,7 @@ pub fn divided(mesh: &Mesh) -> Option<String> {
     let parts = parts.filter(|name| mesh.groups()[*name].cells.len() < mesh.cell_count());
     let parts: Vec<&str> = parts.collect();
     let cells = parts.iter().map(|name| mesh.groups()[*name].cells.len());
-    let names = parts.iter().map(|name| format!("`{name}`"));
-    (cells.sum::<usize>() == mesh.cell_count()).then(|| names.collect::<Vec<_>>().join(", "))
+    quoted(&parts).filter(|_| cells.sum::<usize>() == mesh.cell_count())
 }
 
 /// What is wrong with a region of a mesh that follows others which have a card, and the remedy.

@@ -7,7 +7,7 @@ use crate::document::Section;
 use crate::material::{Card, PlaneState};
 use crate::mesh::Mesh;
 use crate::studies::card::read_card;
-use crate::studies::regions::{fault_of, regions_of};
+use crate::studies::regions::{fault_of, quoted, regions_of};
 
 /// The key of the region that a card is for.
 const ON: &str = "on";
@@ -115,20 +115,15 @@ impl<'a> Materials<'a> {
             return None;
         }
         let count = is_covered.iter().filter(|is| !**is).count();
-        let has_some = |name: &&&str| {
-            let mut cells = mesh.groups()[**name].cells.iter();
+        let has_some = |name: &&str| {
+            let mut cells = mesh.groups()[*name].cells.iter();
             cells.any(|cell| !is_covered[*cell])
         };
-        let names: Vec<String> = known
-            .iter()
-            .filter(has_some)
-            .map(|name| format!("`{name}`"))
-            .collect();
-        let of = if names.is_empty() {
-            "which have no name".to_owned()
-        } else {
-            format!("those of {}", names.join(", "))
-        };
+        let names: Vec<&str> = known.iter().copied().filter(has_some).collect();
+        let of = quoted(&names).map_or_else(
+            || "which have no name".to_owned(),
+            |names| format!("those of {names}"),
+        );
         let message = format!("{count} of {} cells have no card: {of}", mesh.cell_count());
         let hint =
             "add a [[material]] for them, or one without `on`, which is for all remaining cells";
