@@ -1,7 +1,5 @@
 //! Pictures of fits: measured and fitted stresses with the residuals below, over the stretch, over time, or row by row.
 
-mod tests_alone;
-
 use std::path::Path;
 
 use super::chart::stress_chart;
@@ -10,8 +8,6 @@ use super::{Axis, Drawing, Line, LineChart, PALETTE, Scale, Stroke};
 use crate::calibration::{Fit, Test, TestData, Times};
 use crate::material::curve::Mode;
 use crate::statistics::{extremes, farthest};
-
-pub use tests_alone::tests_chart;
 
 const INK: [u8; 3] = [60, 60, 60];
 /// The colour of the part of a record that is not fitted.
@@ -226,6 +222,28 @@ pub fn fit_picture(fit: &Fit, tests: &[TestData]) -> Drawing {
     };
     charts[0].0.notes = notes(fit);
     Drawing::Charts(charts)
+}
+
+/// Tests alone, as they were read, before any law is fitted to them.
+pub fn tests_chart(tests: &[TestData]) -> LineChart {
+    let stresses = |data: &TestData| data.observations.iter().map(|one| one.stress).collect();
+    let stresses: Vec<Vec<f64>> = tests.iter().map(stresses).collect();
+    let named = tests.iter().zip(&stresses);
+    let named: Vec<_> = named
+        .map(|(data, stress)| (data.clone(), &stress[..], data.test.name().to_owned()))
+        .collect();
+    let courses = Course::all(&named);
+    let points = courses.iter();
+    let points = points.map(|course| course.measured(STRETCH, Scale::Linear));
+    let largest = tests.iter().map(|test| test.largest_stress);
+    let measure = tests.first().map_or("", |test| test.stress_measure.title());
+    stress_chart(
+        "The tests as they were read",
+        deformation(tests),
+        &format!("{measure} stress"),
+        largest.fold(0.0, f64::max),
+        points.collect(),
+    )
 }
 
 /// The tests with the fitted stresses and their names in the legend: the law alone has a curve for each protocol of a biaxial test.
