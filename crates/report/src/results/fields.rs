@@ -41,20 +41,6 @@ impl Panel {
         }
     }
 
-    /// A field with a value in each cell of a deformed mesh.
-    pub fn in_cells(
-        label: impl Into<String>,
-        mesh: &Mesh,
-        displacement: &[f64],
-        value: &dyn Fn(usize) -> f64,
-    ) -> Self {
-        Self {
-            label: label.into(),
-            surface: Surface::new(mesh, displacement),
-            values: Values::InCells((0..mesh.cell_count()).map(value).collect()),
-        }
-    }
-
     /// Quadrilaterals with their values.
     pub fn quadrilaterals(label: impl Into<String>, cells: &[([[f64; 2]; 4], f64)]) -> Self {
         let corners: Vec<_> = cells.iter().map(|cell| cell.0).collect();
@@ -120,8 +106,11 @@ impl FieldFigure {
         displacement: &[f64],
         energy: &EnergyError,
     ) -> Self {
-        let percents = energy.cell_percents();
-        let cells = Panel::in_cells(mesh.describe(), mesh, displacement, &|cell| percents[cell]);
+        let cells = Panel {
+            label: mesh.describe(),
+            surface: Surface::new(mesh, displacement),
+            values: Values::InCells(energy.cell_percents()),
+        };
         Self::new(
             format!("Estimated error at {at}"),
             "error of a cell [%]",

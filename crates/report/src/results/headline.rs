@@ -1,7 +1,7 @@
 //! The main results of a study of a sheet: the force and displacement of its groups along the path, and where stress and stretch are
 //! largest.
 
-use super::nodal_sheet::NodalSheet;
+use super::sheet::NodalSheet;
 use super::{Block, Deformed, LocalState, Table, or_dash};
 use crate::mesh::Mesh;
 use crate::mesh::geometry::least_width;

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use super::nodal_sheet::NodalSheet;
+use super::sheet::NodalSheet;
 use super::{Deformed, SheetField};
 use crate::mesh::{Mesh, NodalField};
 use crate::problem::SheetLaws;

@@ -1,6 +1,6 @@
 //! Pictures of stress and strain, of several models side by side.
 
-use super::nodal_sheet::{Deformed, NodalSheet};
+use super::sheet::{Deformed, NodalSheet};
 use super::{FieldFigure, Figure, LocalState, Panel};
 use crate::document::name_of;
 use crate::mesh::NodalField;
