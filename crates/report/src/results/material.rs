@@ -40,8 +40,7 @@ impl Material {
         ];
         for (_, name, card) in regions {
             let heading = Block::heading(format!("Material of {name}"));
-            blocks.push(heading);
-            blocks.extend(statement(card).into_iter().skip(1));
+            blocks.extend([heading, properties(card)]);
         }
         let of_region = |(number, name, card): &(usize, &str, &Card)| json!({ "number": number, "name": name, "material": json(card) });
         let mut all = json(regions[0].2);
@@ -53,7 +52,7 @@ impl Material {
 impl From<&Card> for Material {
     fn from(card: &Card) -> Self {
         Self {
-            blocks: statement(card),
+            blocks: vec![Block::heading("Material"), properties(card)],
             json: json(card),
         }
     }
@@ -79,11 +78,6 @@ fn json(card: &Card) -> Value {
         "fit_error_percent": card.fit_error_percent(),
         "text": card.text,
     })
-}
-
-/// The card of a study.
-fn statement(card: &Card) -> Vec<Block> {
-    vec![Block::Heading(2, "Material".into()), properties(card)]
 }
 
 /// A property of a material and its value.

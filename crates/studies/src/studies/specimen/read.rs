@@ -267,10 +267,13 @@ fn warn_of_parts(section: &Section, specimen: &Specimen, mesh: &Mesh) {
 
 /// Whether the measures could be read, and fit together; what does not is recorded.
 fn fits(section: &Section, outline: &Outline) -> bool {
-    if !outline.is_complete() {
+    let Outline::Shape { shape, .. } = outline else {
+        return true;
+    };
+    if !shape.measures().iter().all(|measure| measure.is_finite()) {
         return false; // A missing measure was reported when it was read.
     }
-    let fits = outline.check();
+    let fits = shape.check();
     if let Err(misfit) = &fits {
         section.fault(misfit.measure, misfit.reason, &misfit.remedy());
     }

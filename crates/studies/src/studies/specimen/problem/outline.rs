@@ -1,7 +1,7 @@
 //! The outline of a specimen, and its meshes.
 
 use crate::budget::Need;
-use crate::mesh::{CellShape, Mesh, Misfit, Shape};
+use crate::mesh::{CellShape, Mesh, Shape};
 
 use super::Refinement;
 use super::grids::{GridCorrection, HALVINGS, PlateGrids};
@@ -36,17 +36,6 @@ pub enum Outline {
 }
 
 impl Outline {
-    /// Whether the measures fit together.
-    ///
-    /// # Errors
-    /// Says which do not.
-    pub fn check(&self) -> Result<(), Misfit> {
-        match self {
-            Self::Shape { shape, .. } => shape.check(),
-            Self::File { .. } | Self::Grid(_) => Ok(()),
-        }
-    }
-
     /// A coarse mesh with the groups of the specimen.
     pub fn coarse(&self) -> Mesh {
         match self {
@@ -121,14 +110,6 @@ impl Outline {
     /// Whether it is a shape by its measures.
     pub fn is_shape(&self) -> bool {
         matches!(self, Self::Shape { .. })
-    }
-
-    /// Whether all measures could be read.
-    pub fn is_complete(&self) -> bool {
-        match self {
-            Self::Shape { shape, .. } => shape.measures().iter().all(|measure| measure.is_finite()),
-            Self::File { .. } | Self::Grid(_) => true,
-        }
     }
 
     /// A description with its measures.
