@@ -119,14 +119,15 @@ pub fn figures(sheet: &MovingSheet, motions: &Motions, series: &[ModelSeries]) -
     figures
 }
 
-/// The force of the measured group over time and over its displacement.
+/// The force of the measured group over time and over its displacement; `None` where no support holds it.
 fn force_figure(sheet: &MovingSheet, motions: &Motions, file: String) -> Option<Figure> {
     let axis = sheet.measured_axis(&motions.elements)?;
-    if !sheet.has_force() {
-        return None;
+    if sheet.drive.release == Some(0.0) {
+        return None; // The group is free in the whole motion.
     }
     let along = ["x", "y"][axis];
-    let (name, moved) = (sheet.measured_name(), sheet.moved_axis(&motions.elements));
+    let name = sheet.measured_name();
+    let moved = sheet.larger_axis(&motions.elements, |state| state.displacement);
     let title = format!("Force of the {}", name.replace('`', ""));
     let chart_of = |label: &str, lines| LineChart::new(&title, label, "force [N]", lines);
     let models = motions.models();

@@ -298,11 +298,6 @@ impl MovingSheet {
         let mut supports = self.specimen.problem.supports.iter();
         supports.any(|(group, _)| *group == self.specimen.group)
     }
-
-    /// Whether the measured group has a force that is worth a picture: it is held, and not released at time 0.
-    pub(super) fn has_force(&self) -> bool {
-        self.drive.release != Some(0.0) && self.is_measured_held()
-    }
 }
 
 /// The extent of a mesh.

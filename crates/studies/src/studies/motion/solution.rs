@@ -219,12 +219,12 @@ impl MovingSheet {
             .then(|| self.larger_axis(model, |state| state.force))
     }
 
-    /// The axis along which the measured group moves more in a motion, x for a plate.
-    pub(super) fn moved_axis(&self, model: &ModelMotion) -> usize {
-        self.larger_axis(model, |state| state.displacement)
-    }
-
-    fn larger_axis(&self, model: &ModelMotion, of: fn(&GroupState) -> [f64; 2]) -> usize {
+    /// The axis along which a vector of the measured group is larger in a motion, x for a plate.
+    pub(super) fn larger_axis(
+        &self,
+        model: &ModelMotion,
+        of: fn(&GroupState) -> [f64; 2],
+    ) -> usize {
         let is_along_y = larger_axis(model.groups.iter().map(of)) == 1;
         usize::from(self.specimen.grids().is_none() && is_along_y)
     }
