@@ -34,7 +34,7 @@ pub fn outcome(specimen: &Specimen, models: &Models) -> Outcome {
         style: specimen.pictures.style.clone(),
         checks: checks(specimen, models, &judged),
         problem: statement::json(specimen),
-        material: Some(statement::material(specimen)),
+        material: Some(specimen.cards().material(&specimen.outline.coarse())),
         along: specimen.along.name(),
         steps: deviations.iter().enumerate().map(quantities).collect(),
         figures: figures(specimen, models, &deviations, &measured),

@@ -5,7 +5,7 @@ use serde_json::{Map, Value, json};
 use super::problem::{PlateGrids, Specimen};
 use crate::material::Card;
 use crate::problem::{Drive, Load, Support};
-use crate::results::{Block, Material, object};
+use crate::results::{Block, object};
 use crate::units::Linear;
 
 /// The specimen, its supports and loads.
@@ -18,12 +18,14 @@ pub fn blocks(specimen: &Specimen) -> Vec<Block> {
     let loads: Vec<_> = loads
         .map(|(group, load)| row(group, load_words(load)))
         .collect();
+    let of_card = |card: &Card| format!("{}: the card `{}`", card.describe_sheet(), card.name);
+    let material = specimen.cards().words(&specimen.outline.coarse(), of_card);
     let text = format!(
         "The specimen is {}, {} mm thick at rest, of {}. Displacements, rotations, forces, tractions and pressures below are those at \
          {} and are proportional to it; the path is {}.",
         specimen.outline.describe(),
         problem.thickness,
-        material_words(specimen),
+        material,
         specimen.along.describe(1.0),
         specimen.along.list(specimen.factors.iter().copied()),
     );
@@ -42,18 +44,7 @@ pub fn blocks(specimen: &Specimen) -> Vec<Block> {
     blocks
 }
 
-/// The material, or those of all regions.
-pub fn material(specimen: &Specimen) -> Material {
-    specimen.cards().material(&specimen.outline.coarse())
-}
-
-/// The same in a sentence.
-fn material_words(specimen: &Specimen) -> String {
-    let words = |card: &Card| format!("{}: the card `{}`", card.describe_sheet(), card.name);
-    specimen.cards().words(&specimen.outline.coarse(), words)
-}
-
-/// The same for machines.
+/// The specimen, its supports and loads, for machines.
 pub fn json(specimen: &Specimen) -> Map<String, Value> {
     let problem = &specimen.problem;
     let supports = problem.supports.iter();
