@@ -9,8 +9,8 @@ use super::results::models::Models;
 use super::results::verdict::Deviation;
 use crate::problem::GroupState;
 use crate::results::{
-    Array, Content, Drawing, FieldFigure, Figure, Grid, GridSeries, Line, LineChart, Panel,
-    SheetField, Stroke, from_rest, material_chart, mesh_outlines, springs_csv,
+    Array, Content, Drawing, FieldFigure, Figure, Grid, GridSeries, LineChart, Panel, SheetField,
+    Stroke, from_rest, material_chart, mesh_outlines, springs_csv,
 };
 use crate::statistics::farthest;
 use crate::studies::pictures::Shown;
