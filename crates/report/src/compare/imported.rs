@@ -60,7 +60,7 @@ impl ModelFields {
     /// The first of `ends` where the finite elements have no solution.
     ///
     /// # Panics
-    /// Where they have none and no end says why.
+    /// Where they have none and `ends` is empty.
     pub fn of(
         fields: [Option<ModelField>; 3],
         mut ends: Vec<Error>,

@@ -171,7 +171,7 @@ impl Check {
         format!(" = {}{unit} ({wanted})", known(self.computed))
     }
 
-    /// The requirement in words.
+    /// A description of the requirement.
     pub fn wanted(&self) -> String {
         match self.wanted {
             _ if self.is_fault => "–".to_owned(),

@@ -77,7 +77,7 @@ pub struct FieldFigure {
     pub quantity: String,
     /// The scale of the colour bar.
     pub scale: Scale,
-    /// Lower and upper end of the colour bar; else all values but for single places.
+    /// Lower and upper end of the colour bar; else those of all values but for single extremes.
     pub range: Option<[f64; 2]>,
     /// The plates.
     pub panels: Vec<Panel>,
@@ -136,7 +136,7 @@ pub struct Frame {
     pub panels: Vec<Panel>,
 }
 
-/// Plates that move, all frames in true proportions, at one place and on one colour scale.
+/// Plates that move, all frames in true proportions, at one position and on one colour scale.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Animation {
     /// Heading.

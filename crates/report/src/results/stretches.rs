@@ -60,7 +60,7 @@ impl Stretches {
         all
     }
 
-    /// What is to be said of them, as of `at 30 % stretch`; nothing within the range, or where corners alone leave it.
+    /// The reason for a warning about the stretches at `load`, such as ` at 30 % stretch`; `None` where at most corners are outside of the range.
     pub fn reason(&self, card: &Card, load: &str) -> Option<String> {
         let [low, high] = card.stretch_range;
         (card.range_is_stated && self.share > WORTH_A_WARNING).then(|| {

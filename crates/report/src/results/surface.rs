@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::mesh::{CellShape, Mesh, NodalField};
 use crate::statistics::extremes;
 
-/// Triangles on the deformed mesh, and its edge deformed and at rest; all places in mm.
+/// Triangles on the deformed mesh, and its edge deformed and at rest; all coordinates in mm.
 #[derive(Clone, Debug, Default, Deserialize, PartialEq, Serialize)]
 pub struct Surface {
     /// Where the values are.

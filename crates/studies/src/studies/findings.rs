@@ -100,7 +100,7 @@ impl<'a> Examined<'a> {
         all.find(|model| !model.states.is_empty())
     }
 
-    /// What a rule finds in the cells of each card in the best model's mesh; of several cards, with the names of their regions.
+    /// The findings of a rule in the cells of each card in the best model's mesh; of several cards, with the names of their regions.
     fn of_cards(&self, rule: impl Fn(&Card, &[usize]) -> Option<Found>) -> Option<Found> {
         self.specimen.cards().in_turn(self.best()?.mesh, rule)
     }
@@ -111,7 +111,7 @@ impl<'a> Examined<'a> {
         (!self.is_motion).then_some(problem)
     }
 
-    /// A load or an instant in words.
+    /// A description of a load or an instant.
     fn load(&self, at: f64) -> String {
         if self.is_motion {
             format!("{} s", number(at))
@@ -326,7 +326,7 @@ fn unstable(examined: Examined) -> Option<Found> {
 
 /// Forces or moments that do not balance.
 fn unbalanced(examined: Examined) -> Option<Found> {
-    /// The share of the largest force above which what is left is worth a warning.
+    /// The largest resultant, over the largest force, that is not worth a warning.
     const UNBALANCED: f64 = 1e-5;
     let balances = forces::balances(examined.specimen, examined.models?);
     let worst = forces::worst_balance(&balances)?;

@@ -30,7 +30,7 @@ pub fn larger_axis(vectors: impl Iterator<Item = [f64; 2]>) -> usize {
 pub struct ModelSeries<'a> {
     pub kind: ModelKind,
     pub mesh: &'a Mesh,
-    /// Its states, as far as it goes.
+    /// Its states, up to the last one that it reached.
     pub states: Vec<ModelState<'a>>,
 }
 

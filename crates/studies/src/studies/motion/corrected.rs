@@ -250,7 +250,7 @@ mod tests {
         assert!((computed[0] - speed(0.5)).abs() < 6e-3);
     }
 
-    /// The distance from a mark, beside it at every place within the steps; at the mark it is the velocity before.
+    /// The motion |t − mark|, with the mark at various points within a step; at the mark the velocity is the one before it.
     #[test]
     fn velocities_do_not_mix_both_sides_of_a_jump() {
         for mark in [4.5, 5.0, 5.3, 6.0 - 1e-9] {

@@ -35,7 +35,7 @@ pub struct PointForce {
 pub struct Drive {
     /// The factor of all motions of supports and of all loads; of a plate, the stretch.
     pub factor: TimeFunction,
-    /// When the supports of the measured group let go, in s.
+    /// When the supports of the measured group release it, in s.
     pub release: Option<f64>,
 }
 
@@ -285,7 +285,7 @@ impl MovingSheet {
             .reduce(|sum, force| [sum[0] + force[0], sum[1] + force[1]])
     }
 
-    /// The measured group in words.
+    /// A description of the measured group.
     pub(super) fn measured_name(&self) -> String {
         match self.specimen.grids() {
             Some(_) => "right grip".into(),
@@ -320,7 +320,7 @@ impl Extent {
     }
 }
 
-/// A force in N on a point, shared by the nodes of its cell as the shape functions say.
+/// A force in N on a point, distributed to the nodes of its cell by the shape functions.
 fn point_force(mesh: &Mesh, at: [f64; 2], force: [f64; 2]) -> Vec<f64> {
     let mut sum = vec![0.0; 2 * mesh.nodes.len()];
     let (cell, local) = mesh.locate(at);

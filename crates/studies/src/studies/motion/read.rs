@@ -280,7 +280,7 @@ fn read_lattice(
 }
 
 /// What a driven motion has to reach where the study does not state it, in %: a support that is driven imposes most of the displacement and of the
-/// force, so that what would be good for a free vibration says nothing.
+/// force, so that the limit for a free vibration would accept any field.
 const DRIVEN_PERCENT: f64 = 5.0;
 
 /// The same for a free motion: a fifth of the 80 % by which the springs of a plate without viscosity deviate over ten periods.

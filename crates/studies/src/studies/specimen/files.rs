@@ -243,7 +243,7 @@ fn estimated_error(specimen: &Specimen, models: &Models, step: usize) -> Option<
     Some(Figure::new(name, caption, drawing))
 }
 
-/// The fields of each model, as far as it goes.
+/// The fields of each model at the load factors that it reached.
 pub fn grids(specimen: &Specimen, models: &Models) -> Vec<GridSeries> {
     let springs = models.of(ModelKind::MassSpring).states.iter();
     let springs = springs.map(|state| {

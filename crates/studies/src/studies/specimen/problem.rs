@@ -248,7 +248,7 @@ impl Specimen {
         self.cards().numbered(&self.outline.coarse())
     }
 
-    /// The card, or the cards with their regions, in words.
+    /// A description of the card, or of the cards with their regions.
     fn describe_cards(&self) -> String {
         let regions = self.numbered_regions().into_iter();
         let regions = regions.map(|(_, name, card)| format!("{} on {name}", card.name));

@@ -77,7 +77,7 @@ fn grids_json(grids: &PlateGrids) -> Map<String, Value> {
     }))
 }
 
-/// A support in words.
+/// A description of a support.
 pub fn support_words(support: &Support) -> String {
     match *support {
         Support::Displacement([Some(0.0), Some(0.0)]) => "clamped: ux = uy = 0".into(),
@@ -132,7 +132,7 @@ pub fn support_words(support: &Support) -> String {
     }
 }
 
-/// A load in words.
+/// A description of a load.
 pub fn load_words(load: &Load) -> String {
     match *load {
         Load::Traction([x, y]) => {

@@ -232,7 +232,7 @@ impl Outline {
         if self.halvings() == 0 || *polygons && mesh.degree() == 1 {
             return None;
         }
-        // What is left between a curve and chords falls with h², between a curve and parabolas with h⁴.
+        // The distance of chords from a curve falls with h², that of parabolas with h⁴.
         let factor = if mesh.degree() == 1 {
             4.0 / 3.0
         } else {

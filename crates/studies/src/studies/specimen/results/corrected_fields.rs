@@ -18,7 +18,7 @@ pub enum Start {
     /// At the equilibrium of the elements, which Newton's method reached from rest in load steps; ū is the
     /// springs' field.
     LoadSteps,
-    /// The same, where the springs have no field: ū is that equilibrium itself, and nothing is left to correct.
+    /// The same, where the springs have no field: ū is that equilibrium itself, which needs no correction.
     Alone,
 }
 

@@ -1,4 +1,4 @@
-//! Springs on the lattice of a specimen and their correction, each as far as its path goes.
+//! Springs on the lattice of a specimen and their correction, each up to the end of its path.
 
 use super::corrected_fields::{Correction, Fields, Start};
 use super::end::{End, Run};
@@ -71,7 +71,7 @@ pub fn solve_springs(run: &mut Run) -> Result<(MassSpring, Solution), Error> {
 }
 
 impl OnLattice {
-    /// Solves the springs and corrects them, as the study wants; each goes as far as it can, whatever the other does.
+    /// Solves the springs and corrects them, as the study asks for; each path ends independently of the other.
     pub fn solve(run: &mut Run) -> Result<Self, Error> {
         let (springs, uncorrected) = solve_springs(run)?;
         let mesh = run.specimen.outline.corrected_mesh();

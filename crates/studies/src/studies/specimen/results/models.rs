@@ -10,7 +10,7 @@ use crate::problem::Solution;
 use crate::studies::ModelKind;
 use crate::studies::series::ModelSeries;
 
-/// The three models of a specimen, each as far as its path goes; those that the study leaves out have no states.
+/// The three models of a specimen, each up to the end of its path; those that the study leaves out have no states.
 pub struct Models {
     /// The finite elements.
     pub reference: Reference,
@@ -23,7 +23,7 @@ pub struct Models {
 }
 
 impl Models {
-    /// Solves those that the study wants, each as far as its path goes.
+    /// Solves the models that the study asks for, each up to the end of its path.
     ///
     /// # Errors
     /// [`Error::Input`] when a group of a mesh cannot be held or loaded as the study says.
@@ -64,7 +64,7 @@ impl Models {
         })
     }
 
-    /// The equilibria of a model, as far as its path goes.
+    /// The equilibria of a model, up to the end of its path.
     pub fn of(&self, kind: ModelKind) -> &Solution {
         match kind {
             ModelKind::MassSpring => &self.on_lattice.uncorrected,
