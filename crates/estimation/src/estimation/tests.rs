@@ -3,7 +3,7 @@ use std::sync::Arc;
 use super::*;
 use crate::error::Error;
 use crate::material::{Card, HyperelasticLaw};
-use crate::problem::{BoundaryProblem, Support};
+use crate::problem::Support;
 use crate::solve::NewtonSettings;
 
 mod coverage;
@@ -13,24 +13,22 @@ mod truth;
 mod uneven;
 mod verdicts;
 
-use truth::{C10, THICKNESS, estimate_mesh, noisy};
-pub(super) use truth::{SIZE, STRETCH, Truth, law, specimen, with_grips};
+use truth::{C10, THICKNESS, estimate_mesh, noisy, sheet};
+pub(super) use truth::{
+    SIZE, STRETCH, Truth, estimate_on, grid, law, measured_force, rectangle, right, solved,
+    specimen, with_grips,
+};
 
 #[test]
 fn noise_on_unknown_and_rigid_grips_falls_by_four_fifths() {
     let (truth, mesh) = (Truth::new(), estimate_mesh());
     let markers = truth.markers(0.3, 1);
     for (condition, most) in [(EdgeCondition::Unknown, 0.06), (EdgeCondition::Rigid, 0.05)] {
-        let result = estimate(&specimen(&mesh), &markers, &with_grips(condition)).unwrap();
+        let result = estimate_on(&mesh, &markers, &with_grips(condition));
         let error = truth.error(&mesh, &result.displacement);
         assert!(error < most, "{condition:?}: {error}");
         assert!((result.noise / 0.3 - 1.0).abs() < 0.1, "{}", result.noise);
-        let force = &result
-            .forces
-            .iter()
-            .find(|force| force.edge == "right")
-            .unwrap()
-            .force[0];
+        let force = &result.forces[right(&result)].force[0];
         let wrong = (force.value - truth.force).abs();
         assert!(
             wrong < 3.0 * force.standard_error && wrong < 0.05 * truth.force,
@@ -45,7 +43,7 @@ fn known_grips_leave_the_markers_to_be_judged() {
     let mut knowledge = with_grips(EdgeCondition::Known([Some(0.0), Some(0.0)]));
     knowledge.edges[1].1 = EdgeCondition::Known([Some(STRETCH * SIZE[0]), Some(0.0)]);
     knowledge.noise = Some(0.3);
-    let result = estimate(&specimen(&mesh), &truth.markers(0.3, 1), &knowledge).unwrap();
+    let result = estimate_on(&mesh, &truth.markers(0.3, 1), &knowledge);
     assert!(truth.error(&mesh, &result.displacement) < 2e-3);
     assert!(
         result.known_noise
@@ -67,26 +65,18 @@ fn multipliers_are_derivatives_of_the_misfit_by_forces() {
     let markers = truth.markers(0.3, 4);
     let mut knowledge = with_grips(EdgeCondition::Known([Some(0.0), Some(0.0)]));
     knowledge.edges[1].1 = EdgeCondition::Known([Some(STRETCH * SIZE[0]), Some(0.0)]);
-    let result = estimate(&specimen(&mesh), &markers, &knowledge).unwrap();
+    let result = estimate_on(&mesh, &markers, &knowledge);
     let node = mesh
         .nodes
         .iter()
         .position(|node| *node == [30.0, 15.0])
         .unwrap();
     let misfit = |force: f64| {
-        let problem = BoundaryProblem {
-            thickness: THICKNESS,
-            law: law(),
-            regions: Vec::new(),
-            supports: vec![
-                ("left".into(), Support::Displacement([Some(0.0), Some(0.0)])),
-                (
-                    "right".into(),
-                    Support::Displacement([Some(STRETCH * SIZE[0]), Some(0.0)]),
-                ),
-            ],
-            loads: Vec::new(),
-        };
+        let held = |x: f64| Support::Displacement([Some(x), Some(0.0)]);
+        let problem = sheet(vec![
+            ("left".into(), held(0.0)),
+            ("right".into(), held(STRETCH * SIZE[0])),
+        ]);
         let energy = problem.finite_elements(&mesh);
         let mut forces = vec![0.0; 2 * mesh.nodes.len()];
         forces[2 * node] = force;
@@ -118,12 +108,8 @@ fn multipliers_are_derivatives_of_the_misfit_by_forces() {
 #[test]
 fn without_noise_the_truth_comes_back() {
     let (truth, mesh) = (Truth::new(), estimate_mesh());
-    let result = estimate(
-        &specimen(&mesh),
-        &truth.markers(0.0, 1),
-        &with_grips(EdgeCondition::Rigid),
-    )
-    .unwrap();
+    let grips = with_grips(EdgeCondition::Rigid);
+    let result = estimate_on(&mesh, &truth.markers(0.0, 1), &grips);
     assert!(truth.error(&mesh, &result.displacement) < 2e-3);
     assert!(result.noise < 2e-3);
 }
@@ -176,7 +162,7 @@ fn the_data_tell_which_edges_are_free() {
     let (truth, mesh) = (Truth::new(), estimate_mesh());
     for noise in [0.02, 0.3] {
         let markers = truth.markers(noise, 3);
-        let result = estimate(&specimen(&mesh), &markers, &Knowledge::default()).unwrap();
+        let result = estimate_on(&mesh, &markers, &Knowledge::default());
         let condition = |name: &str| {
             let edge = result
                 .edges
@@ -203,7 +189,7 @@ fn the_data_tell_which_edges_are_free() {
             unnamed: Unnamed::Loaded,
             ..Knowledge::default()
         };
-        let inside = estimate(&specimen(&mesh), &markers, &loaded).unwrap();
+        let inside = estimate_on(&mesh, &markers, &loaded);
         assert!(
             inside
                 .edges
@@ -219,17 +205,11 @@ fn a_modulus_is_found_with_the_field() {
     let (truth, mesh) = (Truth::new(), estimate_mesh());
     let card = Card::load("neo-hooke", std::path::Path::new(".")).unwrap();
     let knowledge = Knowledge {
-        forces: vec![MeasuredForce {
-            edge: "right".into(),
-            axis: 0,
-            force: truth.force * 1.01,
-            standard_deviation: truth.force * 0.01,
-            common_deviation: 0.0,
-        }],
+        forces: vec![measured_force(truth.force * 1.01, truth.force * 0.01)],
         law: Some(RegressedLaw::of_card(&card, &["c10"]).unwrap()),
         ..with_grips(EdgeCondition::Unknown)
     };
-    let result = estimate(&specimen(&mesh), &truth.markers(0.3, 5), &knowledge).unwrap();
+    let result = estimate_on(&mesh, &truth.markers(0.3, 5), &knowledge);
     let (key, unit, modulus) = &result.parameters[0];
     assert_eq!([&**key, &**unit], ["c10", "MPa"]);
     assert!(modulus.standard_error > 0.008 * C10 && modulus.standard_error < 0.03 * C10);
@@ -259,7 +239,7 @@ fn gross_errors_are_found() {
             robust,
             ..with_grips(EdgeCondition::Unknown)
         };
-        let result = estimate(&specimen(&mesh), &markers, &knowledge).unwrap();
+        let result = estimate_on(&mesh, &markers, &knowledge);
         for (index, marker) in result.markers.iter().enumerate() {
             let marker = marker.unwrap();
             let alarm = marker.outlier && !wrong(&index);
@@ -271,12 +251,7 @@ fn gross_errors_are_found() {
         assert!(truth.error(&mesh, &result.displacement) < 0.08);
         assert!((result.noise / 0.3 - 1.0).abs() < 0.12, "{}", result.noise);
     }
-    let plain = estimate(
-        &specimen(&mesh),
-        &markers,
-        &with_grips(EdgeCondition::Unknown),
-    )
-    .unwrap();
+    let plain = estimate_on(&mesh, &markers, &with_grips(EdgeCondition::Unknown));
     assert!(truth.error(&mesh, &plain.displacement) > 0.1);
 }
 

@@ -5,18 +5,13 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
 use super::*;
-use crate::estimation::EdgeCondition;
-use crate::estimation::tests::{specimen, with_grips};
-use crate::estimation::{Knowledge, MeasuredForce};
+use crate::estimation::tests::{SIZE, grid, measured_force, solved, specimen, with_grips};
+use crate::estimation::{EdgeCondition, Knowledge};
 use crate::markers::Marker;
 use crate::material::Card;
 use crate::mesh::{CellShape, Mesh};
-use crate::problem::{BoundaryProblem, Support};
-use crate::solve::NewtonSettings;
 
-const SIZE: [f64; 2] = [60.0, 30.0];
 const CELLS: [usize; 2] = [20, 10];
-const THICKNESS: f64 = 2.0;
 const STRETCHES: [f64; 5] = [0.1, 0.25, 0.4, 0.6, 0.9];
 
 /// A clamped sheet of Yeoh's law and what is measured of it in every frame.
@@ -41,24 +36,8 @@ impl Series {
         );
         let law = law.unwrap();
         let fine = Mesh::plate(SIZE, cells, CellShape::Quad9);
-        let right = Support::Displacement([Some(SIZE[0]), Some(0.0)]);
-        let problem = BoundaryProblem {
-            thickness: THICKNESS,
-            law: law.at(&law.start()),
-            regions: Vec::new(),
-            supports: vec![
-                ("left".into(), Support::Displacement([Some(0.0); 2])),
-                ("right".into(), right),
-            ],
-            loads: Vec::new(),
-        };
-        let energy = problem.finite_elements(&fine);
-        let newton = NewtonSettings {
-            tolerance: 1e-10,
-            max_iterations: 30,
-        };
-        let discretised = problem.on(&fine, &energy).unwrap();
-        let states = discretised.solve(stretches, newton, &|_| ()).unwrap();
+        let motion = [SIZE[0], 0.0];
+        let states = solved(&fine, law.at(&law.start()), "right", motion, stretches);
         let mut random = ChaCha8Rng::seed_from_u64(seed);
         let mut draw = || -> f64 { StandardNormal.sample(&mut random) };
         let mut series = Self {
@@ -67,21 +46,18 @@ impl Series {
             markers: Vec::new(),
             forces: Vec::new(),
         };
-        for state in &states {
-            let positions = (0..21)
-                .flat_map(|i| (0..11).map(move |j| [3.0 * f64::from(i), 3.0 * f64::from(j)]));
+        for (displacement, [force, _]) in &states {
             let marker = |(number, position): (usize, [f64; 2])| Marker {
                 number,
                 position,
                 displacement: fine
-                    .displacement_at(&state.displacement, position)
+                    .displacement_at(displacement, position)
                     .map(|u| u + noise[0] * draw()),
                 standard_deviation: None,
             };
             series
                 .markers
-                .push(positions.enumerate().map(marker).collect());
-            let force = discretised.reaction(state, "right")[0];
+                .push(grid().into_iter().enumerate().map(marker).collect());
             series.forces.push(force * (1.0 + noise[1] * draw()));
         }
         series
@@ -95,18 +71,11 @@ impl Series {
     }
 
     fn frame<'a>(&'a self, markers: &'a [Marker], force: f64) -> JointFrame<'a> {
-        let measured = MeasuredForce {
-            edge: "right".into(),
-            axis: 0,
-            force,
-            standard_deviation: 0.01 * force,
-            common_deviation: 0.0,
-        };
         JointFrame {
             specimen: specimen(&self.mesh),
             markers,
             knowledge: Knowledge {
-                forces: vec![measured],
+                forces: vec![measured_force(force, 0.01 * force)],
                 ..with_grips(EdgeCondition::Rigid)
             },
         }

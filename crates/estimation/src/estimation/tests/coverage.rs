@@ -5,7 +5,7 @@
 
 use rayon::prelude::*;
 
-use super::{SIZE, STRETCH, THICKNESS, Truth, law, noisy, specimen, with_grips};
+use super::{SIZE, STRETCH, THICKNESS, Truth, estimate_on, grid, law, noisy, right, with_grips};
 use crate::estimation::*;
 use crate::material::sheet::{Kinematics, PlaneTensor};
 use crate::mesh::{CellShape, Mesh};
@@ -17,7 +17,7 @@ fn estimates(truth: &Truth, knowledge: &Knowledge, noise: f64) -> (Mesh, Vec<Fie
     let mesh = Mesh::plate(SIZE, [10, 6], CellShape::Quad9);
     let one = |seed| {
         let markers = truth.markers(noise, 100 + seed);
-        estimate(&specimen(&mesh), &markers, knowledge).unwrap()
+        estimate_on(&mesh, &markers, knowledge)
     };
     let all = (0..SEEDS).into_par_iter().map(one).collect();
     (mesh, all)
@@ -43,22 +43,19 @@ fn standard_errors_are_the_scatter_over_seeds() {
             .collect(),
     );
     assert!((displacement - 1.0).abs() < 0.33, "{displacement}");
-    let right = |result: &FieldEstimate| {
-        let force = result.forces.iter().find(|force| force.edge == "right");
-        force.unwrap().force[0]
-    };
+    let force = |result: &FieldEstimate| result.forces[right(result)].force[0];
     // One force for each seed: √(2/40) = 0.22.
-    let force = mean(
+    let square = mean(
         all.iter()
             .map(|result| {
-                let force = right(result);
+                let force = force(result);
                 ((force.value - truth.force) / force.standard_error).powi(2)
             })
             .collect(),
     );
-    assert!(force > 0.4 && force < 1.9, "{force}");
+    assert!(square > 0.4 && square < 1.9, "{square}");
     for result in &all {
-        let force = right(result);
+        let force = force(result);
         let [low, high] = force.interval;
         let half = result.reach * force.standard_error;
         assert!(
@@ -68,7 +65,7 @@ fn standard_errors_are_the_scatter_over_seeds() {
         assert!(result.contradiction.is_none(), "{:?}", result.contradiction);
     }
     let held = all.iter().filter(|result| {
-        let [low, high] = right(result).interval;
+        let [low, high] = force(result).interval;
         (low..high).contains(&truth.force)
     });
     let held = held.count();
@@ -89,12 +86,7 @@ fn without_noise_the_intervals_hold_the_truth() {
     ));
     let markers = truth.markers(0.0, 1);
     let mesh = Mesh::plate(SIZE, [14, 7], CellShape::Quad9);
-    let result = estimate(
-        &specimen(&mesh),
-        &markers,
-        &with_grips(EdgeCondition::Rigid),
-    )
-    .unwrap();
+    let result = estimate_on(&mesh, &markers, &with_grips(EdgeCondition::Rigid));
     assert!(result.contradiction.is_none(), "{:?}", result.contradiction);
     for edge in &result.forces {
         let wanted = match edge.edge.as_str() {
@@ -130,10 +122,7 @@ fn stress_cover(truth: &Truth, mesh: &Mesh, result: &FieldEstimate) -> f64 {
         {
             continue;
         }
-        let (at, local) = truth.mesh.locate(position);
-        let gradient = truth.mesh.gradient_at(truth.field(), at, local);
-        let kinematics = Kinematics::new(&PlaneTensor::from(gradient)).unwrap();
-        let exact: [f64; 4] = law().stress(&kinematics).1.into();
+        let exact = truth.stress(position);
         let computed = stress.first_piola_kirchhoff_stress.iter();
         for ((exact, computed), error) in exact.iter().zip(computed).zip(&stress.stress_error) {
             let within = (exact - computed).abs() <= result.reach * error;
@@ -155,7 +144,7 @@ fn an_edge_is_free_only_where_noise_could_have_made_the_misfit() {
     let mut weak = 0;
     for (seed, share) in [(0, 0.4), (1, 0.6), (2, 0.8), (3, 1.0), (4, 1.3), (5, 1.6)] {
         let markers = truth.markers(share * STRETCH * SIZE[0], seed);
-        let result = estimate(&specimen(&mesh), &markers, &knowledge).unwrap();
+        let result = estimate_on(&mesh, &markers, &knowledge);
         for edge in &result.edges {
             let Some(probability) = edge.probability else {
                 continue;
@@ -179,12 +168,7 @@ fn noise_that_correlates_between_neighbours_is_not_white() {
         let wave = wave(marker.position);
         marker.displacement = marker.displacement.map(|u| u + wave);
     }
-    let result = estimate(
-        &specimen(&mesh),
-        &markers,
-        &with_grips(EdgeCondition::Rigid),
-    )
-    .unwrap();
+    let result = estimate_on(&mesh, &markers, &with_grips(EdgeCondition::Rigid));
     assert_ne!(result.verdict.answer, Answer::Explained);
 }
 
@@ -192,8 +176,6 @@ fn noise_that_correlates_between_neighbours_is_not_white() {
 #[test]
 fn forces_too_small_to_be_seen_have_intervals_that_hold_them() {
     let mesh = Mesh::plate(SIZE, [10, 6], CellShape::Quad9);
-    let grid = (0..21).flat_map(|i| (0..11).map(move |j| [3.0 * f64::from(i), 3.0 * f64::from(j)]));
-    let grid: Vec<[f64; 2]> = grid.collect();
     let mut knowledge = with_grips(EdgeCondition::Free);
     knowledge
         .edges
@@ -205,8 +187,8 @@ fn forces_too_small_to_be_seen_have_intervals_that_hold_them() {
         let force = stress * THICKNESS * SIZE[1];
         let field = |[x, y]: [f64; 2]| [slopes[0] * x, slopes[1] * y];
         let holds = (0..SEEDS).into_par_iter().filter(|seed| {
-            let markers = noisy(&grid, &field, 0.02, 900 + seed);
-            let result = estimate(&specimen(&mesh), &markers, &knowledge).unwrap();
+            let markers = noisy(&grid(), &field, 0.02, 900 + seed);
+            let result = estimate_on(&mesh, &markers, &knowledge);
             let forces = result.forces.iter().map(|edge| edge.force[0].interval);
             let right = |[low, high]: [f64; 2]| low <= force && force <= high;
             let mirrored = |[low, high]: [f64; 2]| low <= -force && -force <= high;

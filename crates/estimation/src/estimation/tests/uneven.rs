@@ -3,7 +3,7 @@
 use super::*;
 use crate::markers::Marker;
 use crate::mesh::{CellShape, Mesh};
-use crate::problem::Load;
+use crate::problem::{BoundaryProblem, Load};
 use crate::statistics::extremes;
 
 /// 31 × 16 places, the outermost on the edges.
@@ -52,10 +52,9 @@ fn uneven_noise_is_neither_laid_to_grips_and_edges_nor_left_out_of_intervals() {
         for seed in 0..4 {
             let markers = markers(&|position| truth.at(position), size, seed);
             let knowledge = with_grips(EdgeCondition::Rigid);
-            let result = estimate(&specimen(&mesh), &markers, &knowledge).unwrap();
+            let result = estimate_on(&mesh, &markers, &knowledge);
             explained += usize::from(result.verdict.answer != Answer::NotExplained);
-            let force = result.forces.iter().find(|force| force.edge == "right");
-            let [low, high] = force.unwrap().force[0].interval;
+            let [low, high] = result.forces[right(&result)].force[0].interval;
             held += usize::from(low < truth.force && truth.force < high);
             let [least, most] = extremes(result.noise_range.expect("uneven").into_iter().flatten());
             assert!(most > 2.0 * least, "{least} {most}");
@@ -74,11 +73,8 @@ fn forces_of_unknown_edges_that_meet_in_singular_corners_are_in_their_intervals(
     let traction = [0.05, 0.01];
     let clamp = |name: &str| (name.to_owned(), Support::Displacement([Some(0.0); 2]));
     let problem = BoundaryProblem {
-        thickness: THICKNESS,
-        law: law(),
-        regions: Vec::new(),
-        supports: ["left", "bottom", "top"].map(clamp).to_vec(),
         loads: vec![("right".into(), Load::Traction(traction))],
+        ..sheet(["left", "bottom", "top"].map(clamp).to_vec())
     };
     let fine = Mesh::plate(SIZE, [52, 28], CellShape::Quad9);
     let energy = problem.finite_elements(&fine);
@@ -97,9 +93,8 @@ fn forces_of_unknown_edges_that_meet_in_singular_corners_are_in_their_intervals(
     for seed in 0..4 {
         let at = |position| fine.displacement_at(field, position);
         let markers = markers(&at, &|_| [0.01; 2], seed);
-        let result = estimate(&specimen(&mesh), &markers, &knowledge).unwrap();
-        let force = result.forces.iter().find(|force| force.edge == "right");
-        for (axis, component) in force.unwrap().force.iter().enumerate() {
+        let result = estimate_on(&mesh, &markers, &knowledge);
+        for (axis, component) in result.forces[right(&result)].force.iter().enumerate() {
             let exact = traction[axis] * SIZE[1] * THICKNESS;
             let [low, high] = component.interval;
             assert!(low < exact && exact < high, "{seed}: {component:?} {exact}");

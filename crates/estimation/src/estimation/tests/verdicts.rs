@@ -88,8 +88,7 @@ fn too_few_independent_values_leave_the_right_law_undecided_with_intervals_that_
     let all: Vec<FieldEstimate> = (0..8).into_par_iter().map(estimated).collect();
     for estimated in &all {
         assert_ne!(estimated.verdict.answer, Answer::NotExplained);
-        let force = estimated.forces.iter().find(|force| force.edge == "right");
-        let force = &force.unwrap().force[0];
+        let force = &estimated.forces[right(estimated)].force[0];
         let [low, high] = force.interval;
         assert!(low < truth.force && truth.force < high, "{force:?}");
         assert!(high - low < 0.1 * truth.force, "{force:?}");
@@ -125,17 +124,11 @@ fn a_wrong_law_is_refuted_by_white_noise_and_never_explained_by_correlated_noise
 fn a_roller_is_proposed_where_an_edge_is_stated_to_be_free_or_a_grip() {
     let truth = Mesh::plate(SIZE, [26, 14], CellShape::Quad9);
     let moved = |values: [Option<f64>; 2]| Support::Displacement(values);
-    let problem = BoundaryProblem {
-        thickness: THICKNESS,
-        law: law(),
-        regions: Vec::new(),
-        supports: vec![
-            ("left".into(), moved([Some(0.0); 2])),
-            ("right".into(), moved([Some(24.0), Some(0.0)])),
-            ("bottom".into(), moved([None, Some(0.0)])),
-        ],
-        loads: Vec::new(),
-    };
+    let problem = sheet(vec![
+        ("left".into(), moved([Some(0.0); 2])),
+        ("right".into(), moved([Some(24.0), Some(0.0)])),
+        ("bottom".into(), moved([None, Some(0.0)])),
+    ]);
     let energy = problem.finite_elements(&truth);
     let model = problem.on(&truth, &energy).unwrap();
     let states = model.solve(&[0.5, 1.0], NewtonSettings::default(), &|_| ());
@@ -151,9 +144,7 @@ fn a_roller_is_proposed_where_an_edge_is_stated_to_be_free_or_a_grip() {
             .find(|(name, _)| name == "bottom");
         bottom.unwrap().1 = stated;
         let mesh = estimate_mesh();
-        let verdict = estimate(&specimen(&mesh), &markers, &knowledge)
-            .unwrap()
-            .verdict;
+        let verdict = estimate_on(&mesh, &markers, &knowledge).verdict;
         let proposed = verdict
             .trials
             .iter()
@@ -182,16 +173,10 @@ fn a_wrong_force_leaves_the_field_as_the_markers_show_it() {
     let markers = truth.markers(0.02, 4);
     for share in [0.4, 0.6, 1.5] {
         let knowledge = Knowledge {
-            forces: vec![MeasuredForce {
-                edge: "right".into(),
-                axis: 0,
-                force: share * truth.force,
-                standard_deviation: 0.01 * truth.force,
-                common_deviation: 0.0,
-            }],
+            forces: vec![measured_force(share * truth.force, 0.01 * truth.force)],
             ..with_grips(EdgeCondition::Rigid)
         };
-        let result = estimate(&specimen(&mesh), &markers, &knowledge).unwrap();
+        let result = estimate_on(&mesh, &markers, &knowledge);
         assert_eq!(result.verdict.answer, Answer::NotExplained);
         assert!(truth.error(&mesh, &result.displacement) < 0.02, "{share}");
         let factor = result

@@ -204,10 +204,8 @@ fn subtract_means(values: &mut [f64], edges: &[usize]) {
 mod tests {
     use std::path::Path;
 
-    use crate::estimation::tests::{Truth, specimen, with_grips};
-    use crate::estimation::{
-        EdgeCondition, FieldEstimate, Knowledge, MeasuredForce, UncertainLaw, estimate,
-    };
+    use crate::estimation::tests::{Truth, estimate_on, measured_force, right, with_grips};
+    use crate::estimation::{EdgeCondition, FieldEstimate, Knowledge, MeasuredForce, UncertainLaw};
     use crate::material::Card;
     use crate::mesh::{CellShape, Mesh};
 
@@ -231,14 +229,11 @@ mod tests {
                 forces,
                 ..with_grips(EdgeCondition::Rigid)
             };
-            estimate(&specimen(&mesh), &truth.markers(0.1, 1), &knowledge).unwrap()
-        };
-        let right = |result: &FieldEstimate| {
-            let index = result.forces.iter().position(|force| force.edge == "right");
-            (index.unwrap(), result.forces[index.unwrap()].force[0])
+            estimate_on(&mesh, &truth.markers(0.1, 1), &knowledge)
         };
         let [plain, uncertain] = [of(None, Vec::new()), of(recorded(), Vec::new())];
-        let ((_, before), (index, after)) = (right(&plain), right(&uncertain));
+        let index = right(&uncertain);
+        let [before, after] = [&plain, &uncertain].map(|result| result.forces[index].force[0]);
         assert!(plain.is_given_the_law && plain.law_deviations.is_empty());
         // The force is proportional to the only parameter.
         let deviation = uncertain.law_deviations[index][0];
@@ -260,13 +255,7 @@ mod tests {
             (wide / narrow.hypot(0.03 * value) - 1.0).abs() < 1e-2,
             "{narrow} {wide}"
         );
-        let measured = MeasuredForce {
-            edge: "right".into(),
-            axis: 0,
-            force: truth.force,
-            standard_deviation: 0.001 * truth.force,
-            common_deviation: 0.0,
-        };
+        let measured = measured_force(truth.force, 0.001 * truth.force);
         assert!(!of(recorded(), vec![measured]).is_given_the_law);
     }
 }

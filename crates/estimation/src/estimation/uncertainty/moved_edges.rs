@@ -166,10 +166,9 @@ fn is_stated(condition: EdgeCondition, axis: usize) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use crate::estimation::tests::{SIZE, Truth, specimen, with_grips};
-    use crate::estimation::{Alternative, Answer, EdgeCondition, MovedPart, estimate};
+    use crate::estimation::tests::{SIZE, Truth, estimate_on, rectangle, with_grips};
+    use crate::estimation::{Alternative, Answer, EdgeCondition, MovedPart};
     use crate::markers::Marker;
-    use crate::mesh::{CellShape, Outline};
 
     /// How far the edges of a plate are found from those of a mesh that lie so much farther in.
     fn estimated(
@@ -178,16 +177,12 @@ mod tests {
         noise: f64,
     ) -> (Answer, Vec<(MovedPart, f64)>) {
         let [length, width] = SIZE;
-        let (low, high) = (bottom, width - top);
-        let line = vec![[0.0, low], [length, low], [length, high], [0.0, high]];
-        let mesh = Outline::of_lines(vec![line])
-            .unwrap()
-            .mesh(2.0, CellShape::Triangle6);
+        let mesh = rectangle([0.0, bottom], [length, width - top]);
         let markers = truth.markers(noise, 5).into_iter();
         let amid = |marker: &Marker| marker.position[1] > 2.0 && marker.position[1] < width - 2.0;
         let markers: Vec<Marker> = markers.filter(amid).collect();
         let knowledge = with_grips(EdgeCondition::Unknown);
-        let estimated = estimate(&specimen(&mesh), &markers, &knowledge).unwrap();
+        let estimated = estimate_on(&mesh, &markers, &knowledge);
         let moved =
             estimated
                 .verdict
@@ -230,10 +225,7 @@ mod tests {
         let truth = Truth::new();
         let [length, width] = SIZE;
         for off in [1.0, -1.0] {
-            let (low, high) = (off, [length - off, width - off]);
-            let line = vec![[low, low], [high[0], low], high, [low, high[1]]];
-            let outline = Outline::of_lines(vec![line]).unwrap();
-            let mesh = outline.mesh(2.0, CellShape::Triangle6);
+            let mesh = rectangle([off; 2], [length - off, width - off]);
             let amid = |marker: &Marker| {
                 let inside = |axis: usize| (1.0..SIZE[axis] - 1.0).contains(&marker.position[axis]);
                 inside(0) && inside(1)
@@ -241,9 +233,7 @@ mod tests {
             let markers = truth.markers(0.01, 5).into_iter();
             let markers: Vec<Marker> = markers.filter(amid).collect();
             let knowledge = with_grips(EdgeCondition::Rigid);
-            let verdict = estimate(&specimen(&mesh), &markers, &knowledge)
-                .unwrap()
-                .verdict;
+            let verdict = estimate_on(&mesh, &markers, &knowledge).verdict;
             assert_eq!(verdict.answer, Answer::NotExplained);
             let first = &verdict.trials[0].alternative;
             let Alternative::MovedEdge { part, outwards } = first else {

@@ -80,10 +80,8 @@ impl NearestField<'_> {
 
 #[cfg(test)]
 mod tests {
-    use crate::estimation::tests::{SIZE, Truth, specimen, with_grips};
-    use crate::estimation::{
-        Alternative, Answer, EdgeCondition, FieldEstimate, Knowledge, MeasuredForce, estimate,
-    };
+    use crate::estimation::tests::{SIZE, Truth, estimate_on, measured_force, right, with_grips};
+    use crate::estimation::{Alternative, Answer, EdgeCondition, FieldEstimate, Knowledge};
     use crate::markers::Marker;
     use crate::mesh::{CellShape, Mesh};
 
@@ -105,12 +103,7 @@ mod tests {
             scale_deviation: deviation,
             ..with_grips(EdgeCondition::Rigid)
         };
-        estimate(&specimen(&mesh), &markers, &knowledge).unwrap()
-    }
-
-    fn right(result: &FieldEstimate) -> usize {
-        let force = result.forces.iter().position(|force| force.edge == "right");
-        force.unwrap()
+        estimate_on(&mesh, &markers, &knowledge)
     }
 
     #[test]
@@ -157,20 +150,12 @@ mod tests {
         }
         let mesh = Mesh::plate(SIZE, [20, 10], CellShape::Quad9);
         let answer = |scale_deviation: f64| {
-            let measured = MeasuredForce {
-                edge: "right".into(),
-                axis: 0,
-                force: truth.force,
-                standard_deviation: 0.01 * truth.force,
-                common_deviation: 0.0,
-            };
             let knowledge = Knowledge {
-                forces: vec![measured],
+                forces: vec![measured_force(truth.force, 0.01 * truth.force)],
                 scale_deviation,
                 ..with_grips(EdgeCondition::Rigid)
             };
-            let result = estimate(&specimen(&mesh), &markers, &knowledge).unwrap();
-            result.verdict.answer
+            estimate_on(&mesh, &markers, &knowledge).verdict.answer
         };
         assert_eq!(answer(0.0), Answer::NotExplained);
         assert_ne!(answer(5e-3), Answer::NotExplained);
