@@ -22,41 +22,29 @@ pub fn pairs(files: &[PathBuf]) -> Vec<Vec<&Path>> {
         let name = file.file_stem()?.to_string_lossy().into_owned();
         Some((file.parent()?.to_owned(), name))
     };
-    let mut groups: Vec<Vec<&Path>> = Vec::new();
-    let mut taken = vec![false; files.len()];
-    for (index, file) in files.iter().enumerate() {
-        if taken[index] {
-            continue;
-        }
-        let other = stem(file).and_then(|(folder, name)| {
-            let other = format!("{}v", name.strip_suffix('u')?);
-            series(&name)?;
-            let of_name = |file: &PathBuf| stem(file) == Some((folder.clone(), other.clone()));
-            files.iter().position(of_name)
-        });
-        groups.push(match other {
-            Some(other) => {
-                taken[other] = true;
-                vec![file, &files[other]]
-            }
-            None => vec![file.as_path()],
-        });
-    }
-    // A matrix of v that stands before its u was taken as a file of its own.
-    let paired: Vec<&Path> = groups
-        .iter()
-        .filter(|group| group.len() == 2)
-        .map(|group| group[1])
-        .collect();
-    groups.retain(|group| group.len() == 2 || !paired.contains(&group[0]));
-    groups
+    let matrix_of_v = |file: &PathBuf| {
+        let (folder, name) = stem(file)?;
+        series(&name)?;
+        let other = Some((folder, format!("{}v", name.strip_suffix('u')?)));
+        files.iter().find(|file| stem(file) == other)
+    };
+    let others: Vec<Option<&PathBuf>> = files.iter().map(matrix_of_v).collect();
+    let first = files.iter().zip(&others);
+    first
+        .filter(|(file, _)| !others.contains(&Some(*file)))
+        .map(|(file, other)| {
+            [file]
+                .into_iter()
+                .chain(*other)
+                .map(PathBuf::as_path)
+                .collect()
+        })
+        .collect()
 }
 
 /// The name of a frame without the component at its end: `frame_1` of `frame_1_u`.
 pub fn series(stem: &str) -> Option<&str> {
-    let series = stem.strip_suffix('u')?;
-    let plain = series.strip_suffix(['_', '-', '.'])?;
-    Some(plain)
+    stem.strip_suffix('u')?.strip_suffix(['_', '-', '.'])
 }
 
 /// Reads the two matrices of a frame.
@@ -94,24 +82,20 @@ pub fn read(u: &Path, v: &Path, reading: &ReadSettings) -> Result<FileRows, Erro
             // Outside of the region of interest there is no specimen.
             if *u != 0.0 || *v != 0.0 {
                 rows.push(Row {
-                    frame: None,
-                    time: None,
-                    name: None,
                     position: [step * j as f64, -step * i as f64],
                     displacement: [unit * u, -unit * v],
-                    standard_deviation: None,
+                    ..Row::default()
                 });
             }
         }
     }
     Ok(FileRows {
         rows,
-        mesh: None,
         understood: Understood {
             turned_up: true,
             ..Understood::of("Ncorr")
         },
-        warnings: Vec::new(),
+        ..FileRows::default()
     })
 }
 

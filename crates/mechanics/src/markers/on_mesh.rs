@@ -26,13 +26,13 @@ pub fn read(path: &Path, reading: &ReadSettings) -> Result<FileRows, Error> {
             name: Some(node),
             position: *position,
             displacement: [u[0], u[1]],
-            standard_deviation: None,
+            ..Row::default()
         })
     });
     Ok(FileRows {
         rows: rows.collect(),
         mesh: Some(series.mesh),
         understood: Understood::of("field on a mesh"),
-        warnings: Vec::new(),
+        ..FileRows::default()
     })
 }

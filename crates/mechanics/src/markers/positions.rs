@@ -41,22 +41,19 @@ pub(super) fn read(frame: &Path, settings: &ReadSettings) -> Result<FileRows, Er
         .into_iter()
         .zip(moved)
         .map(|((name, position), (_, moved))| Row {
-            frame: None,
-            time: None,
             name,
             position,
             displacement: [moved[0] - position[0], moved[1] - position[1]],
-            standard_deviation: None,
+            ..Row::default()
         });
     Ok(FileRows {
         rows: rows.collect(),
-        mesh: None,
         understood: Understood {
             encoding: table.encoding.map(|encoding| encoding.name()),
             turned_up: settings.downwards == Some(true),
             ..Understood::of("positions")
         },
-        warnings: Vec::new(),
+        ..FileRows::default()
     })
 }
 

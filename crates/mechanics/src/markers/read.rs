@@ -1,5 +1,6 @@
 //! Files of any kind as one series of frames.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use super::frames::MarkerSeries;
@@ -67,16 +68,14 @@ pub fn read(files: &[PathBuf], settings: &ReadSettings) -> Result<MarkerFiles, E
 /// Adds the frames of one more file, which must be of the same kind.
 fn append(combined: &mut FileRows, added: FileRows, file: &Path) -> Result<(), Error> {
     let meshes = [&combined.mesh, &added.mesh].map(|mesh| mesh.as_ref().map(|mesh| &mesh.nodes));
-    let fault = match () {
-        () if combined.understood.layout != added.understood.layout => {
-            "has another layout than the files before it"
-        }
-        () if meshes[0] != meshes[1] => "has another mesh than the files before it",
-        () => {
-            combined.rows.extend(added.rows);
-            combined.warnings.extend(added.warnings);
-            return Ok(());
-        }
+    let fault = if combined.understood.layout != added.understood.layout {
+        "has another layout than the files before it"
+    } else if meshes[0] != meshes[1] {
+        "has another mesh than the files before it"
+    } else {
+        combined.rows.extend(added.rows);
+        combined.warnings.extend(added.warnings);
+        return Ok(());
     };
     let hint = "give the frames of one measurement in one layout and on one mesh";
     Err(Error::input(format!("{} {fault}", file.display()), hint))
@@ -94,11 +93,8 @@ fn frame_numbers(groups: &[Vec<&Path>]) -> Vec<usize> {
         stem[digits.len()..].parse().ok()
     };
     let numbers: Option<Vec<usize>> = groups.iter().map(number).collect();
-    let different = |numbers: &Vec<usize>| {
-        let mut sorted = numbers.clone();
-        sorted.sort_unstable();
-        sorted.windows(2).all(|pair| pair[0] != pair[1])
-    };
+    let different =
+        |numbers: &Vec<usize>| numbers.iter().collect::<BTreeSet<_>>().len() == numbers.len();
     let counted = || (1..=groups.len()).collect();
     numbers.filter(different).unwrap_or_else(counted)
 }

@@ -35,7 +35,7 @@ pub struct ReadSettings {
 }
 
 /// A marker of a file, before markers have numbers.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Row {
     /// The frame, where the file says it.
     pub frame: Option<usize>,
@@ -49,6 +49,7 @@ pub(super) struct Row {
 }
 
 /// The rows of one file and the mesh that they came on.
+#[derive(Default)]
 pub(super) struct FileRows {
     pub rows: Vec<Row>,
     pub mesh: Option<Mesh>,
