@@ -36,7 +36,6 @@ mod free_edges;
 mod input;
 mod joint;
 mod judge;
-mod mesh_error;
 mod noise;
 mod outcome;
 mod regression;

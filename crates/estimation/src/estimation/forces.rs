@@ -3,9 +3,8 @@
 use super::edges::Body;
 use super::equations::Grip;
 use super::input::Edge;
-use super::mesh_error::MeshError;
 use super::outcome::{EdgeForce, ForceCheck, FoundParameter};
-use super::search::NearestField;
+use super::search::{MeshError, NearestField};
 use super::uncertainty::ScaleChange;
 use crate::error::Error;
 use crate::material::parameters::Parameter;

@@ -6,11 +6,10 @@
 //! linearised step).
 
 use super::input::Edge;
-use super::mesh_error::MeshError;
 use super::outcome::{
     Alternative, Answer, Contradiction, ForceCheck, NoiseCorrelation, Reason, Trial, Verdict, Worst,
 };
-use super::search::NearestField;
+use super::search::{MeshError, NearestField};
 use crate::error::Error;
 use crate::statistics::{CorrelatedNoise, nearest, normal_tail};
 

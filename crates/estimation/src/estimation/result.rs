@@ -6,13 +6,12 @@ use rayon::prelude::*;
 use super::equations::solve;
 use super::input::{Edge, Neighbours};
 use super::judge::{Judgement, judge};
-use super::mesh_error::{MESH_ERROR_FACTOR, MeshError};
 use super::outcome::{
     Answer, EdgeOutcome, FieldEstimate, MarkerEstimate, RULE, RULE_WITH_MODEL_ERROR, Smoothing,
     StressEstimate,
 };
 use super::regression::Robust;
-use super::search::NearestField;
+use super::search::{MESH_ERROR_FACTOR, MeshError, NearestField};
 use crate::error::{Error, SolveFault};
 use crate::finite_element::recovery::Recovery;
 use crate::material::sheet::{Kinematics, PlaneTensor};

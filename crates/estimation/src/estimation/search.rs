@@ -2,11 +2,10 @@
 
 use std::sync::OnceLock;
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 use super::equations::{AT_THE_END, Equations, Linear, ON_THE_WAY, SearchState, solve};
 use super::input::Observations;
-use super::mesh_error::MeshError;
 use super::regression::{Fit, Regression, Undetermined, VarianceComponents};
 use crate::error::{Error, SolveFault};
 use crate::solve::vector::{add_scaled, largest, moved};
@@ -41,6 +40,24 @@ pub struct NearestField<'a> {
     pub steps: usize,
     /// The mesh's own error, once it was needed.
     pub known_mesh_error: OnceLock<Option<MeshError>>,
+}
+
+/// The discretisation error is at most about this multiple of the difference that cells half as large make.
+pub const MESH_ERROR_FACTOR: f64 = 2.0;
+
+/// The discretisation error of a field ([`super::uncertainty`] computes it on cells half as large).
+#[derive(Clone, Debug)]
+pub struct MeshError {
+    /// e of node after node in mm.
+    pub displacement: Vec<f64>,
+    /// δp.
+    pub parameters: DVector<f64>,
+    /// H e, two numbers per marker.
+    pub markers: Vec<f64>,
+    /// G₁₁, G₁₂, G₂₁, G₂₂ of cell after cell.
+    pub gradients: Vec<[f64; 4]>,
+    /// The error of the force of each body in N, in the order of the bodies.
+    pub forces: Vec<[f64; 2]>,
 }
 
 /// One linearised regression.

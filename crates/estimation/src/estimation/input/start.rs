@@ -14,18 +14,48 @@ pub const DEGREE: usize = 3;
 /// A displacement field of two polynomials of one total degree.
 #[derive(Clone, Debug)]
 pub struct Polynomial {
-    centre: [f64; 2],
-    size: f64,
-    degree: usize,
+    monomials: Monomials,
     coefficients: DMatrix<f64>,
 }
 
-/// Places and displacements of markers in mm.
+/// All xᵃyᵇ with a + b up to the degree: x, y from the centre of the box around the markers, over half its longer side.
+#[derive(Clone, Copy, Debug)]
+struct Monomials {
+    centre: [f64; 2],
+    size: f64,
+    degree: usize,
+}
+
+/// Positions and displacements of markers in mm.
 pub struct Points<'a> {
-    /// Places.
+    /// Positions at rest.
     pub positions: &'a [[f64; 2]],
     /// Displacements.
     pub displacements: &'a [[f64; 2]],
+}
+
+impl Monomials {
+    fn new(positions: &[[f64; 2]], degree: usize) -> Self {
+        let limits = [0, 1].map(|axis| extremes(positions.iter().map(|position| position[axis])));
+        let half_sides = limits.map(|[low, high]| 0.5 * (high - low));
+        Self {
+            centre: limits.map(|[low, high]| 0.5 * (low + high)),
+            size: half_sides.into_iter().fold(0.0, f64::max),
+            degree,
+        }
+    }
+
+    fn count(self) -> usize {
+        (self.degree + 1) * (self.degree + 2) / 2
+    }
+
+    fn at(self, position: [f64; 2]) -> Vec<f64> {
+        let [x, y] = [0, 1].map(|axis| (position[axis] - self.centre[axis]) / self.size);
+        let powers = (0..=self.degree).flat_map(|a| (0..=self.degree - a).map(move |b| (a, b)));
+        powers
+            .map(|(a, b)| x.powi(a as i32) * y.powi(b as i32))
+            .collect()
+    }
 }
 
 impl Polynomial {
@@ -61,9 +91,9 @@ impl Polynomial {
         best.map(|(_, coefficients)| rows.polynomial(coefficients))
     }
 
-    /// The displacement at a place in mm.
+    /// The displacement at a position in mm.
     pub fn at(&self, position: [f64; 2]) -> [f64; 2] {
-        let terms = DVector::from_vec(terms(local(position, self.centre, self.size), self.degree));
+        let terms = DVector::from_vec(self.monomials.at(position));
         [0, 1].map(|axis| self.coefficients.column(axis).dot(&terms))
     }
 
@@ -89,13 +119,9 @@ impl Polynomial {
     }
 }
 
-/// Some markers with the terms of polynomials at their places, for many fits.
+/// Some markers with the monomials at their positions, for many fits.
 struct Rows {
-    centre: [f64; 2],
-    size: f64,
-    degree: usize,
-    /// Number of terms.
-    count: usize,
+    monomials: Monomials,
     /// Marker after marker.
     terms: Vec<f64>,
     displacements: Vec<[f64; 2]>,
@@ -104,40 +130,35 @@ struct Rows {
 impl Rows {
     /// Every so many of the markers.
     fn new(points: &Points, degree: usize, stride: usize) -> Self {
-        let [centre, [size, _]] = frame(points.positions);
+        let monomials = Monomials::new(points.positions, degree);
         let positions = points.positions.iter().step_by(stride);
         let displacements = points.displacements.iter().step_by(stride);
         Self {
-            count: terms([0.0; 2], degree).len(),
+            monomials,
             terms: positions
-                .flat_map(|position| terms(local(*position, centre, size), degree))
+                .flat_map(|position| monomials.at(*position))
                 .collect(),
             displacements: displacements.copied().collect(),
-            centre,
-            size,
-            degree,
         }
     }
 
     fn polynomial(&self, coefficients: DMatrix<f64>) -> Polynomial {
         Polynomial {
-            centre: self.centre,
-            size: self.size,
-            degree: self.degree,
+            monomials: self.monomials,
             coefficients,
         }
     }
 
     /// The coefficients of a polynomial through as few markers as determine it.
     fn sample(&self, random: &mut impl Rng) -> Option<DMatrix<f64>> {
-        let all = self.displacements.len();
-        let chosen = (all >= self.count).then(|| sample(random, all, self.count));
+        let (all, count) = (self.displacements.len(), self.monomials.count());
+        let chosen = (all >= count).then(|| sample(random, all, count));
         self.through(&chosen?.into_vec())
     }
 
     /// The coefficients nearest to some markers; `None` where these do not determine them.
     fn through(&self, chosen: &[usize]) -> Option<DMatrix<f64>> {
-        let count = self.count;
+        let count = self.monomials.count();
         if chosen.len() < count {
             return None;
         }
@@ -161,10 +182,11 @@ impl Rows {
 
     /// The square of each marker's distance from a polynomial.
     fn squares(&self, coefficients: &DMatrix<f64>) -> Vec<f64> {
-        let rows = self.terms.chunks_exact(self.count).zip(&self.displacements);
+        let count = self.monomials.count();
+        let rows = self.terms.chunks_exact(count).zip(&self.displacements);
         let square = |(row, displacement): (&[f64], &[f64; 2])| {
             let off = [0, 1].map(|axis| {
-                let factors = &coefficients.as_slice()[axis * self.count..];
+                let factors = &coefficients.as_slice()[axis * count..];
                 let terms = row.iter().zip(factors);
                 displacement[axis] - terms.map(|(term, factor)| term * factor).sum::<f64>()
             });
@@ -194,27 +216,6 @@ impl Rows {
         }
         Some((least, coefficients))
     }
-}
-
-/// The middle of the box around places, and half its longer side (twice).
-fn frame(positions: &[[f64; 2]]) -> [[f64; 2]; 2] {
-    let limits = [0, 1].map(|axis| extremes(positions.iter().map(|position| position[axis])));
-    let size = limits
-        .iter()
-        .fold(0.0_f64, |size, [low, high]| size.max(0.5 * (high - low)));
-    [limits.map(|[low, high]| 0.5 * (low + high)), [size; 2]]
-}
-
-fn local(position: [f64; 2], centre: [f64; 2], size: f64) -> [f64; 2] {
-    [0, 1].map(|axis| (position[axis] - centre[axis]) / size)
-}
-
-/// All xᵃyᵇ with a + b up to the degree.
-fn terms([x, y]: [f64; 2], degree: usize) -> Vec<f64> {
-    let powers = (0..=degree).flat_map(|a| (0..=degree - a).map(move |b| (a, b)));
-    powers
-        .map(|(a, b)| x.powi(a as i32) * y.powi(b as i32))
-        .collect()
 }
 
 #[cfg(test)]

@@ -135,12 +135,12 @@ impl Model {
 
     /// The correlations that the noise may have, where the data show one, the likeliest first.
     pub fn noises(&self, rows: &Rows) -> Vec<CorrelatedNoise> {
-        let some = rows.clusters();
-        let entry = |row: usize| 2 * some.chosen[row / 2] + row % 2;
-        let count = 2 * some.chosen.len();
+        let (chosen, sites) = rows.clusters();
+        let entry = |row: usize| 2 * chosen[row / 2] + row % 2;
+        let count = 2 * chosen.len();
         let columns = self.design.ncols();
         let regression = CorrelatedRegression {
-            sites: &some.sites,
+            sites: &sites,
             design: &DMatrix::from_fn(count, columns, |row, j| self.design[(entry(row), j)]),
             residual: &DVector::from_fn(count, |row, _| self.residual[entry(row)]),
             held: &self.held,

@@ -2,9 +2,8 @@
 
 use nalgebra::DMatrix;
 
-use crate::estimation::mesh_error::{MESH_ERROR_FACTOR, MeshError};
 use crate::estimation::regression::{Fit, VarianceComponents, squares};
-use crate::estimation::search::NearestField;
+use crate::estimation::search::{MESH_ERROR_FACTOR, MeshError, NearestField};
 use crate::statistics::{Sites, chi_squared_limit, extremes, nearest};
 
 /// Fewer markers carry no information on each other.
@@ -23,14 +22,6 @@ pub struct Rows {
     pub extent: [f64; 2],
     /// √(area of the box over the number of markers), in mm.
     pub spacing: f64,
-}
-
-/// Some of the sound markers.
-pub struct Clusters {
-    /// Their numbers among the sound ones.
-    pub chosen: Vec<usize>,
-    /// Their places.
-    pub sites: Sites,
 }
 
 impl Rows {
@@ -81,16 +72,13 @@ impl Rows {
         })
     }
 
-    /// At most some thousands of them, in clusters that show short and long distances alike.
-    pub fn clusters(&self) -> Clusters {
+    /// The indices and the positions of at most some thousands of the sound markers, in clusters that show short and long distances alike.
+    pub fn clusters(&self) -> (Vec<usize>, Sites) {
         const MOST: usize = 3000;
         const TOGETHER: usize = 30;
         let positions = self.sites.positions();
         if positions.len() <= MOST {
-            return Clusters {
-                chosen: (0..positions.len()).collect(),
-                sites: self.sites.clone(),
-            };
+            return ((0..positions.len()).collect(), self.sites.clone());
         }
         let around = nearest(positions, TOGETHER - 1);
         let first = (0..positions.len()).step_by(positions.len() * TOGETHER / MOST);
@@ -99,10 +87,8 @@ impl Rows {
             .collect();
         chosen.sort_unstable();
         chosen.dedup();
-        Clusters {
-            sites: Sites::new(chosen.iter().map(|index| positions[*index]).collect()),
-            chosen,
-        }
+        let sites = Sites::new(chosen.iter().map(|index| positions[*index]).collect());
+        (chosen, sites)
     }
 
     /// Rows of these markers out of a matrix with two rows for each marker on the mesh, over the noise.

@@ -125,15 +125,13 @@ impl NearestField<'_> {
         let observations = self.observations();
         let at_markers = observations.interpolation.multiply(change);
         let equations = &self.equations;
-        let mut target = equations.target_of(&at_markers, &self.linear.design, &self.variances);
         let measured = equations.task.knowledge.measured_forces().iter();
-        for (row, measured) in measured.enumerate() {
+        let forces = measured.map(|measured| {
             let grip = equations.grip_of_edge(measured, &self.field)?;
-            let off = dot(&grip.pull, change) + dot(&grip.marks, force);
-            let slopes = self.linear.force_rows.0.row(row).transpose();
-            target -= slopes * (off / measured.standard_deviation);
-        }
-        Ok(target)
+            Ok(dot(&grip.pull, change) + dot(&grip.marks, force))
+        });
+        let forces = forces.collect::<Result<Vec<f64>, Error>>()?;
+        Ok(equations.target_with_forces(&at_markers, &forces, &self.linear, &self.variances))
     }
 
     /// The standard errors of the bodies' forces along x and y in N due to the law's parameters, nothing where none is considered, and due to

@@ -4,9 +4,8 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::error::Error;
 use crate::estimation::input::Edge;
-use crate::estimation::mesh_error::MESH_ERROR_FACTOR;
 use crate::estimation::regression::{Fit, VarianceComponents};
-use crate::estimation::search::NearestField;
+use crate::estimation::search::{MESH_ERROR_FACTOR, NearestField};
 
 /// A change that is no alternative to the equations, because it is known to be possible.
 pub struct Granted {

@@ -18,10 +18,9 @@ use rayon::prelude::*;
 
 use crate::estimation::edges::Body;
 use crate::estimation::equations::{BodyForce, Equations, Linear};
-use crate::estimation::input::{Edge, EdgeCondition};
-use crate::estimation::mesh_error::MeshError;
+use crate::estimation::input::{Edge, EdgeCondition, MeasuredForce};
 use crate::estimation::regression::VarianceComponents;
-use crate::estimation::search::NearestField;
+use crate::estimation::search::{MeshError, NearestField};
 use crate::mesh::Mesh;
 use crate::problem::corner_forces::{Hold, Share, reaction_shares};
 use crate::problem::sheet_energy::SheetEnergy;
@@ -230,14 +229,29 @@ impl Equations<'_> {
         linear: &Linear,
         variances: &VarianceComponents,
     ) -> DVector<f64> {
-        let mut target = self.target_of(&difference.markers, &linear.design, variances);
-        let measured = self.task.knowledge.measured_forces().iter().enumerate();
-        for (row, measured) in measured {
+        let force = |measured: &MeasuredForce| -> f64 {
             let bodies = self.bodies.iter().zip(&difference.forces);
-            let bodies = bodies.filter(|(body, _)| body.name == measured.edge);
-            let off: f64 = bodies.map(|(_, force)| force[measured.axis]).sum();
+            let of_edge = bodies.filter(|(body, _)| body.name == measured.edge);
+            of_edge.map(|(_, force)| force[measured.axis]).sum()
+        };
+        let measured = self.task.knowledge.measured_forces().iter();
+        let forces: Vec<f64> = measured.map(force).collect();
+        self.target_with_forces(&difference.markers, &forces, linear, variances)
+    }
+
+    /// −AᵀWd/v − Gᵀf/σ of displacements d at the markers and changes f of the measured forces in N.
+    pub fn target_with_forces(
+        &self,
+        displacements: &[f64],
+        forces: &[f64],
+        linear: &Linear,
+        variances: &VarianceComponents,
+    ) -> DVector<f64> {
+        let mut target = self.target_of(displacements, &linear.design, variances);
+        let measured = self.task.knowledge.measured_forces().iter().zip(forces);
+        for (row, (measured, force)) in measured.enumerate() {
             let slopes = linear.force_rows.0.row(row).transpose();
-            target -= slopes * (off / measured.standard_deviation);
+            target -= slopes * (force / measured.standard_deviation);
         }
         target
     }
