@@ -206,7 +206,7 @@ impl<'a> Equations<'a> {
         state: &mut SearchState,
         settings: NewtonSettings,
     ) -> Result<Vec<f64>, Error> {
-        self.take(&state.parameters);
+        self.set_parameters(&state.parameters);
         let mut wanted = state.field.clone();
         self.motion.at(&state.parameters).write(&mut wanted);
         let mut residual = vec![0.0; state.field.len()];
@@ -252,7 +252,7 @@ impl<'a> Equations<'a> {
     }
 
     /// Sets the law and the forces on the interior from the parameters.
-    fn take(&mut self, parameters: &[f64]) {
+    fn set_parameters(&mut self, parameters: &[f64]) {
         if let Some(body) = &self.body {
             let last = &parameters[parameters.len() - body.columns().len()..];
             self.forces = body.forces(last, self.forces.len());
@@ -308,7 +308,7 @@ impl<'a> Equations<'a> {
     /// Checks the equilibrium of a state, and restores it where it is lost.
     pub fn balance(&mut self, state: &mut SearchState) -> Result<(), Error> {
         const LOST: f64 = 1e-2;
-        self.take(&state.parameters);
+        self.set_parameters(&state.parameters);
         self.motion.at(&state.parameters).write(&mut state.field);
         let mut residual = vec![0.0; state.field.len()];
         let admissible = self.with_potential(|_, potential| {

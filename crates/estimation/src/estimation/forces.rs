@@ -50,7 +50,7 @@ impl NearestField<'_> {
         let slopes = self.equations.law_slopes(&self.parameters, &self.field)?;
         let along = |index: usize, axis: usize| -> Result<Estimate, Error> {
             let (grip, row) = self.grip_of(index, axis, &slopes)?;
-            let force = dot(&grip.marks, &reactions);
+            let force = dot(&grip.factors, &reactions);
             let mesh = mesh_error.map_or(0.0, |mesh_error| {
                 mesh_error.forces[index][axis] + dot(&row, mesh_error.parameters.as_slice())
             });

@@ -126,7 +126,7 @@ fn outcome(
         course: &course,
         inverse: &inverse,
         covariance: &covariance,
-        alike: &alike(&parts, &inverse, mesh.as_ref()),
+        common_error: &common_error(&parts, &inverse, mesh.as_ref()),
         reach: reach(descent, sum(|part| part.independent) - effective),
         directions: &directions,
     };
@@ -155,15 +155,15 @@ fn covariance(
     common: f64,
     widening: f64,
 ) -> DMatrix<f64> {
-    let alike = common * (equal_frames(parts, inverse) - 1.0).max(0.0);
+    let repeated = common * (equal_frames(parts, inverse) - 1.0).max(0.0);
     let sum = parts.iter().fold(inverse * 0.0, |sum, part| {
-        sum + &part.spread + &part.spread_of_markers * alike
+        sum + &part.spread + &part.spread_of_markers * repeated
     });
     inverse * (sum * widening) * inverse
 }
 
 /// The effects on each parameter of errors that all frames have in common: those of forces, of pictures, and of meshes, taken as independent.
-fn alike(parts: &[FrameInformation], inverse: &DMatrix<f64>, mesh: Option<&Step>) -> Step {
+fn common_error(parts: &[FrameInformation], inverse: &DMatrix<f64>, mesh: Option<&Step>) -> Step {
     let common = [0, 1].map(|kind| {
         let targets = parts.iter().map(|part| &part.common[kind]);
         inverse * targets.sum::<Step>()
@@ -219,7 +219,7 @@ fn frame_outcomes(
         let others = if groups == 1 {
             None
         } else {
-            descent.without(course, &members, watch)?
+            descent.without_frames(course, &members, watch)?
         };
         let law = descent
             .law

@@ -44,7 +44,7 @@ pub fn with_observed_noise<T>(
     let mut ratio = None;
     loop {
         let (result, other) = search(observations)?;
-        if !observations.take(&other) {
+        if !observations.adapt_to(&other) {
             return Ok((result, ratio));
         }
         ratio = ratio.or(other.ratio);
@@ -67,7 +67,7 @@ impl OtherNoise {
 
 impl Observations {
     /// Adapts the weights to other noise; returns whether there is any.
-    fn take(&mut self, other: &OtherNoise) -> bool {
+    fn adapt_to(&mut self, other: &OtherNoise) -> bool {
         if other.is_none() {
             return false;
         }
@@ -91,7 +91,7 @@ impl NearestField<'_> {
         edges: &[Edge],
     ) -> OtherNoise {
         let unevenness = self.unevenness(markers);
-        let unevenness = unevenness.filter(|_| !self.is_left_by_cells(markers, edges));
+        let unevenness = unevenness.filter(|_| !self.is_mesh_error(markers, edges));
         OtherNoise {
             ratio: self.contradicted_noise(markers, unevenness.is_some()),
             unevenness,
@@ -99,7 +99,7 @@ impl NearestField<'_> {
     }
 
     /// Whether the mesh's own error or rounding, which are no noise, make up much of the markers' residuals.
-    fn is_left_by_cells(&self, markers: &[Option<MarkerEstimate>], edges: &[Edge]) -> bool {
+    fn is_mesh_error(&self, markers: &[Option<MarkerEstimate>], edges: &[Edge]) -> bool {
         const MUCH: f64 = 0.2;
         const ROUNDING: f64 = 1e-6;
         let observations = self.observations();
@@ -153,11 +153,11 @@ impl NearestField<'_> {
     }
 
     /// The least and the largest standard deviation of the noise of markers along x and along y in mm, where the weights have followed the data.
-    pub(super) fn deviations(&self, larger: f64) -> Option<[[f64; 2]; 2]> {
+    pub(super) fn deviations(&self, variance_ratio: f64) -> Option<[[f64; 2]; 2]> {
         let observations = self.observations();
         let along = |axis: usize| {
             let weights = observations.weights.iter().skip(axis).step_by(2);
-            extremes(weights.map(|weight| (larger * self.variances.sound / weight).sqrt()))
+            extremes(weights.map(|weight| (variance_ratio * self.variances.sound / weight).sqrt()))
         };
         (observations.reweighted > 0).then(|| [0, 1].map(along))
     }
@@ -172,14 +172,14 @@ impl NearestField<'_> {
     /// of freedom of the noise's size where it is correlated.
     pub(super) fn widen(&mut self, judged: &Judgement) -> Option<f64> {
         let smoothing_bias = self.smoothing_bias();
-        let freedom = self.take_noise(judged);
+        let freedom = self.include_noise(judged);
         self.fit.covariance += smoothing_bias;
         freedom
     }
 
     /// Sets the covariance under the noise that was found, of several the one that moves the markers most; returns the degrees of
     /// freedom of its size where it is correlated.
-    fn take_noise(&mut self, judged: &Judgement) -> Option<f64> {
+    fn include_noise(&mut self, judged: &Judgement) -> Option<f64> {
         const LEAST: f64 = 3.0;
         let observations = self.observations();
         let sites = Sites::new(observations.positions.clone());

@@ -30,8 +30,8 @@ impl NearestField<'_> {
         let markers = self.markers(mesh_error);
         let known_noise = self.observations().known_noise;
         let robust = self.equations.task.knowledge.robust;
-        let begun = self.take_uncertainty(edges, mesh_error, &judged)?;
-        let larger = judged.noises.first().map_or(1.0, |noise| noise.variance);
+        let uncertain = self.include_uncertainties(edges, mesh_error, &judged)?;
+        let variance_ratio = judged.noises.first().map_or(1.0, |noise| noise.variance);
         let weights = &self.observations().weights;
         let mean = weights.iter().sum::<f64>() / weights.len() as f64;
         // A misfit is not noise.
@@ -42,11 +42,11 @@ impl NearestField<'_> {
             holds_mesh_error: mesh_error.is_some(),
             imbalance: self.imbalance(),
             growth: self.growth(edges),
-            verdict: judged.verdict.with_forces(&begun.force_checks),
+            verdict: judged.verdict.with_forces(&uncertain.force_checks),
             contradiction: judged.contradiction,
             markers,
-            noise: (larger * self.variances.sound / mean).sqrt(),
-            noise_range: self.deviations(larger).filter(|_| is_noise),
+            noise: (variance_ratio * self.variances.sound / mean).sqrt(),
+            noise_range: self.deviations(variance_ratio).filter(|_| is_noise),
             robust,
             known_noise,
             effective_parameters: self.fit.effective,
@@ -61,13 +61,13 @@ impl NearestField<'_> {
             reactions: self.reactions(),
             multipliers: self.multipliers,
             displacement: self.field,
-            ..begun
+            ..uncertain
         })
     }
 
     /// Adds all uncertainties of the field to the covariance, one after the other; figures that do not include all of
     /// them are made on the way. Returns the beginning of an estimate.
-    fn take_uncertainty(
+    fn include_uncertainties(
         &mut self,
         edges: &[Edge],
         mesh_error: Option<&MeshError>,
@@ -77,7 +77,7 @@ impl NearestField<'_> {
         let white = (rows - self.fit.effective).max(1.0);
         let considered = self.considered(edges)?;
         let [by_law, by_all] = self.force_deviations(&considered)?;
-        let scale = self.scale_answer();
+        let scale = self.scale_response();
         let scale_change = self.scale_change(&scale)?;
         let before = self.force_checks(mesh_error, &scale_change, &by_all)?;
         let freedom = self.widen(judged).unwrap_or(white);
@@ -93,7 +93,7 @@ impl NearestField<'_> {
             Answer::NotExplained => before,
             _ => self.force_checks(mesh_error, &scale_change, &by_all)?,
         };
-        self.take_scale(&scale);
+        self.include_scale(&scale);
         let forces = self.forces(reach, mesh_error, &by_all)?;
         let parameters = self.law_parameters(reach, mesh_error);
         // Forces keep common distances of edges on the side that is possible.

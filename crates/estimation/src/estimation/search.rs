@@ -99,7 +99,11 @@ impl<'a> Equations<'a> {
         for steps in 1..=most {
             let linear = self.linearise(&state)?;
             let fit = self.regress(&state, steps > adjusting, &linear, &mut variances)?;
-            let change = combined(&linear.still, &linear.sensitivities, fit.step.as_slice());
+            let change = combined(
+                &linear.newton_step,
+                &linear.sensitivities,
+                fit.step.as_slice(),
+            );
             let close = self.close(&variances, &state.field);
             let scale = largest(&state.field);
             (moved, wanted) = (largest(&change) / scale, close / scale);
@@ -107,7 +111,7 @@ impl<'a> Equations<'a> {
                 share = next_share(share, fit.length / last);
             }
             last = fit.length;
-            let near = fit.length <= NEAR && largest(&linear.still) <= close;
+            let near = fit.length <= NEAR && largest(&linear.newton_step) <= close;
             let done = largest(&change) <= close || (steps > adjusting && near);
             let cut = self.advance(&mut state, &change, fit.step.as_slice(), share)?;
             if done && !cut {
@@ -233,7 +237,7 @@ impl<'a> Equations<'a> {
         settled: bool,
         linear: &'b Linear,
     ) -> Regression<'b> {
-        let ahead = moved(&state.field, 1.0, &linear.still);
+        let ahead = moved(&state.field, 1.0, &linear.newton_step);
         let observations = self.task.observations;
         Regression {
             design: &linear.design,
@@ -318,9 +322,9 @@ fn next_share(share: f64, ratio: f64) -> f64 {
     }
 }
 
-/// still + Σ stepⱼ columnⱼ.
-fn combined(still: &[f64], columns: &[Vec<f64>], step: &[f64]) -> Vec<f64> {
-    let mut sum = still.to_vec();
+/// newton_step + Σ stepⱼ columnⱼ.
+fn combined(newton_step: &[f64], columns: &[Vec<f64>], step: &[f64]) -> Vec<f64> {
+    let mut sum = newton_step.to_vec();
     for (column, factor) in columns.iter().zip(step) {
         add_scaled(&mut sum, *factor, column);
     }

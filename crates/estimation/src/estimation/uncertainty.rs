@@ -7,7 +7,7 @@ mod moved_edges;
 mod picture_scale;
 mod refined_mesh;
 mod smoothing_bias;
-mod unknown_places;
+mod unknown_edges;
 
 pub use granted::Granted;
 pub use moved_edges::MovedEdge;

@@ -94,7 +94,7 @@ pub fn common_unit<'a>(heads: impl IntoIterator<Item = Option<&'a str>>) -> Opti
 }
 
 /// The names of the places' columns of a table of no other program.
-pub const PLACES: [Names; 2] = [&["x"], &["y"]];
+pub const POSITIONS: [Names; 2] = [&["x"], &["y"]];
 
 /// Those of its displacements' columns.
 pub const DISPLACEMENTS: [Names; 2] = [&["ux", "u", "u_x"], &["uy", "v", "u_y"]];
@@ -115,13 +115,13 @@ pub fn required(table: &Table, names: Names, hint: &str) -> Result<(usize, Optio
         } else {
             format!("the file has {}", headings.join(", "))
         };
-        let message = format!("there is no column `{}`: {headings}", plainly(names));
+        let message = format!("there is no column `{}`: {headings}", first_name(names));
         table.refuse_columns(message, hint)
     })
 }
 
 /// The first of some names, for messages.
-pub fn plainly(names: Names) -> &'static str {
+pub fn first_name(names: Names) -> &'static str {
     names
         .first()
         .map_or("", |name| name.trim_start_matches('='))

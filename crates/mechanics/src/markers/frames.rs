@@ -70,12 +70,12 @@ impl MarkerSeries {
     /// The places of all markers of all frames, each once, in the order of their first frame; those that were found in none
     /// come last.
     pub fn positions(&self) -> Vec<[f64; 2]> {
-        let tracked = self.places_of_found().into_iter();
+        let tracked = self.tracked_positions().into_iter();
         tracked.chain(self.lost.iter().copied()).collect()
     }
 
     /// The same places without those of markers that were found in no frame.
-    pub fn places_of_found(&self) -> Vec<[f64; 2]> {
+    pub fn tracked_positions(&self) -> Vec<[f64; 2]> {
         let mut seen = HashSet::new();
         let markers = self.frames.iter().flat_map(|frame| &frame.markers);
         let tracked = markers.filter(|marker| seen.insert(marker.number));

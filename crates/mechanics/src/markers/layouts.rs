@@ -32,7 +32,7 @@
 //! GOM: nodemaps of github.com/dlr-wf/aramis-data-exporter; GOM Correlate's tables as
 //! github.com/jaredvanblitterswyk/lce_tension_tests reads them (below five lines of preamble, places in the frame).
 
-use super::columns::{DISPLACEMENTS, HEIGHT, LIFT, Names, PLACES};
+use super::columns::{DISPLACEMENTS, HEIGHT, LIFT, Names, POSITIONS};
 use crate::document::{Table, is_pixel};
 
 /// The columns and conventions of a layout.
@@ -60,7 +60,7 @@ pub(super) struct Layout {
 
 const COLUMNS: Layout = Layout {
     name: "columns",
-    positions: PLACES,
+    positions: POSITIONS,
     displacements: DISPLACEMENTS,
     deviation: &["standard_deviation", "sigma"],
     out_of_plane: [HEIGHT, LIFT],

@@ -80,23 +80,25 @@ struct Gathering {
     named: bool,
     /// Whether the points are nodes of a mesh.
     mesh: bool,
-    by_place: HashMap<[u64; 2], usize>,
+    by_position: HashMap<[u64; 2], usize>,
     frames: BTreeMap<usize, Frame>,
     /// The displacements at each place of each frame.
     seen: HashMap<(usize, [u64; 2]), Vec<[f64; 2]>>,
     lost: BTreeMap<usize, [f64; 2]>,
     holes: usize,
-    twice: usize,
-    again: usize,
+    /// Rows that repeat another one.
+    duplicates: usize,
+    /// Rows with another displacement at a position that was measured before.
+    repetitions: usize,
 }
 
 impl Gathering {
     fn add(&mut self, row: Row) {
         let key = row.position.map(|x| (x + 0.0).to_bits());
-        let next = self.by_place.len();
+        let next = self.by_position.len();
         let number = match row.name {
             Some(name) if self.named => name as usize,
-            _ => *self.by_place.entry(key).or_insert(next),
+            _ => *self.by_position.entry(key).or_insert(next),
         };
         let frame_number = row.frame.unwrap_or(1);
         let frame = self.frames.entry(frame_number).or_default();
@@ -108,13 +110,13 @@ impl Gathering {
             }
             return;
         }
-        let there = self.seen.entry((frame_number, key)).or_default();
-        if !self.mesh && there.contains(&row.displacement) {
-            self.twice += 1;
+        let displacements = self.seen.entry((frame_number, key)).or_default();
+        if !self.mesh && displacements.contains(&row.displacement) {
+            self.duplicates += 1;
             return;
         }
-        self.again += usize::from(!self.mesh && !there.is_empty());
-        there.push(row.displacement);
+        self.repetitions += usize::from(!self.mesh && !displacements.is_empty());
+        displacements.push(row.displacement);
         frame.markers.push(Marker {
             number,
             position: row.position,
@@ -134,12 +136,12 @@ impl Gathering {
                 "they are left out; the positions of those within the specimen still count for the outline",
             ),
             (
-                self.twice,
+                self.duplicates,
                 "duplicate rows, with the same position and displacement in one frame",
                 "each counts once: a copy adds no information",
             ),
             (
-                self.again,
+                self.repetitions,
                 "markers measured again at the same position in one frame, with another displacement",
                 "each counts as a measurement of its own; give one row per marker if they are not independent",
             ),

@@ -25,7 +25,7 @@ pub struct Subset {
     /// Distance of neighbouring subsets in pixels.
     pub step: f64,
     /// Where this is said.
-    pub told_by: String,
+    pub source: String,
 }
 
 impl Subset {
@@ -33,8 +33,8 @@ impl Subset {
     pub(super) fn of(table: &Table, path: &Path, layout: &str) -> Option<Self> {
         let of_head = |size: &str, step: &str| {
             let head = &table.source.text;
-            let told_by = format!("the header of {}", name_of(path));
-            Self::new([remark(head, size), remark(head, step)], told_by)
+            let source = format!("the header of {}", name_of(path));
+            Self::new([remark(head, size), remark(head, step)], source)
         };
         match layout {
             "DICe" | "DICe, stereo" => of_head("subset size", "step size"),
@@ -53,12 +53,12 @@ impl Subset {
         }
     }
 
-    fn new(values: [Option<f64>; 2], told_by: String) -> Option<Self> {
+    fn new(values: [Option<f64>; 2], source: String) -> Option<Self> {
         let [size, step] = values.map(|value| value.filter(|value| *value > 0.0));
         Some(Self {
             size: size?,
             step: step?,
-            told_by,
+            source,
         })
     }
 }

@@ -158,12 +158,12 @@ impl<'a> Reader<'a> {
         };
         let hint = "write a number in every field of this column, or leave it empty where nothing was found";
         table.check_numbers_or_holes(reader.read(), hint)?;
-        reader.overlooks_none(layout, chosen.any(&Role::LENGTHS), &reading.ignored_columns)
+        reader.check_columns(layout, chosen.any(&Role::LENGTHS), &reading.ignored_columns)
     }
 
     /// Refuses columns that nobody reads, and points that leave their plane; where the user names the columns, others are only
     /// told.
-    fn overlooks_none(
+    fn check_columns(
         mut self,
         layout: &Layout,
         named: bool,
@@ -188,7 +188,7 @@ impl<'a> Reader<'a> {
             let lengths = [layout.positions, layout.displacements];
             let lengths = lengths.as_flattened().iter().chain([&layout.deviation]);
             let others = [FRAME, TIME, NAME].into_iter().chain(layout.out_of_plane);
-            let known = lengths.copied().chain(others).map(columns::plainly);
+            let known = lengths.copied().chain(others).map(columns::first_name);
             let known: Vec<&str> = known.filter(|name| !name.is_empty()).collect();
             columns::check_all(table, &used, &known, ignored)?;
         }

@@ -297,7 +297,7 @@ impl TrackedImages {
         let subset = Subset {
             size: self.patch as f64,
             step: self.patch as f64,
-            told_by: "the tracking of the images".to_owned(),
+            source: "the tracking of the images".to_owned(),
         };
         MarkerFiles {
             series: self.patches.clone(),

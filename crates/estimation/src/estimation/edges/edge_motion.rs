@@ -139,7 +139,7 @@ impl EdgeMotion {
             let positions = nodes.iter().map(|node| self.positions[*node][axis]);
             positions.sum::<f64>() / nodes.len() as f64
         });
-        let first = self.take(3);
+        let first = self.add_parameters(3);
         self.parts.push(Part::Rigid {
             nodes,
             centre,
@@ -161,12 +161,12 @@ impl EdgeMotion {
         let coefficients = [0, 1].map(|axis| {
             let [first, last] = segment.ends().map(|node| 2 * node + axis);
             let mut end = |motion: &mut Self, unknown: usize| {
-                let parameter = || Coefficient::Parameter(motion.take(1));
+                let parameter = || Coefficient::Parameter(motion.add_parameters(1));
                 *moved.entry(unknown).or_insert_with(parameter)
             };
             let mut coefficients = vec![end(self, first)];
             for _ in 1..spline.count() - 1 {
-                coefficients.push(Coefficient::Parameter(self.take(1)));
+                coefficients.push(Coefficient::Parameter(self.add_parameters(1)));
             }
             coefficients.push(end(self, last));
             coefficients
@@ -176,7 +176,7 @@ impl EdgeMotion {
         let offsets = offsets(&spline, &along, &points).unwrap_or(vec![[0.0; 2]; along.len()]);
         let square: f64 = offsets.iter().flatten().map(|offset| offset * offset).sum();
         let is_uneven = square > (UNEVEN * spacing).powi(2) * offsets.len() as f64;
-        let gradient = is_uneven.then(|| self.take(4));
+        let gradient = is_uneven.then(|| self.add_parameters(4));
         let nodes = segment.nodes.iter().zip(along).zip(offsets);
         let nodes = nodes.map(|((node, position), offset)| SmoothNode {
             node: *node,
@@ -192,7 +192,8 @@ impl EdgeMotion {
         });
     }
 
-    fn take(&mut self, count: usize) -> usize {
+    /// Adds parameters; returns the index of the first.
+    fn add_parameters(&mut self, count: usize) -> usize {
         self.parameters += count;
         self.parameters - count
     }

@@ -13,7 +13,7 @@ use crate::solve::vector::{add_scaled, dot};
 /// The equations and the observations linearised about a place.
 pub struct Linear {
     /// −K⁻¹ F.
-    pub still: Vec<f64>,
+    pub newton_step: Vec<f64>,
     /// ∂u/∂p of one parameter after the other.
     pub sensitivities: Vec<Vec<f64>>,
     /// H ∂u/∂p.
@@ -51,15 +51,16 @@ impl Equations<'_> {
         for (sensitivity, motion) in sensitivities.iter_mut().zip(&motions) {
             add_scaled(sensitivity, 1.0, motion);
         }
-        let still = changes.remove(0);
+        let newton_step = changes.remove(0);
         let interpolation = &self.task.observations.interpolation;
         let columns = sensitivities
             .iter()
             .flat_map(|column| interpolation.multiply(column));
         let design = DMatrix::from_iterator(interpolation.len(), sensitivities.len(), columns);
-        let force_rows = self.force_rows(field, &residual, &still, &sensitivities, &slopes)?;
+        let force_rows =
+            self.force_rows(field, &residual, &newton_step, &sensitivities, &slopes)?;
         Ok(Linear {
-            still,
+            newton_step,
             sensitivities,
             design,
             force_rows,
@@ -71,7 +72,7 @@ impl Equations<'_> {
         &self,
         field: &[f64],
         residual: &[f64],
-        still: &[f64],
+        newton_step: &[f64],
         sensitivities: &[Vec<f64>],
         slopes: &[Vec<f64>],
     ) -> Result<(DMatrix<f64>, DVector<f64>), Error> {
@@ -80,7 +81,7 @@ impl Equations<'_> {
         let mut values = DVector::zeros(measured.len());
         for (row, measured) in measured.iter().enumerate() {
             let grip = self.grip_of_edge(measured, field)?;
-            let force = dot(&grip.marks, residual) + dot(&grip.pull, still);
+            let force = dot(&grip.factors, residual) + dot(&grip.gradient, newton_step);
             values[row] = (measured.force - force) / measured.standard_deviation;
             let slopes = grip.slopes(sensitivities, self.motion.parameters(), slopes);
             for (column, slope) in slopes.into_iter().enumerate() {
@@ -101,35 +102,35 @@ impl Equations<'_> {
 
     /// The force of some reactions along an axis as a function of the field.
     pub fn grip(&self, shares: &[Share], axis: usize, field: &[f64]) -> Result<Grip, Error> {
-        let mut marks = vec![0.0; field.len()];
+        let mut factors = vec![0.0; field.len()];
         for (node, factor) in shares {
-            marks[2 * node + axis] += factor;
+            factors[2 * node + axis] += factor;
         }
         for unknown in self.newton.free() {
-            marks[*unknown] = 0.0;
+            factors[*unknown] = 0.0;
         }
-        let mut pull = vec![0.0; field.len()];
-        let added = Assembly::add_product(&self.energy, field, &marks, &mut pull);
+        let mut gradient = vec![0.0; field.len()];
+        let added = Assembly::add_product(&self.energy, field, &factors, &mut gradient);
         added.map_err(|fault| self.inverted(fault))?;
-        Ok(Grip { marks, pull })
+        Ok(Grip { factors, gradient })
     }
 }
 
 /// The force g·∂Π/∂u of a grip.
 pub struct Grip {
     /// g: the factors of the reactions at the grip's held unknowns.
-    pub marks: Vec<f64>,
+    pub factors: Vec<f64>,
     /// g·K.
-    pub pull: Vec<f64>,
+    pub gradient: Vec<f64>,
 }
 
 impl Grip {
     /// Its derivatives by p; those from `first` on change the law too, by ∂F/∂θ in `law`.
     pub fn slopes(&self, sensitivities: &[Vec<f64>], first: usize, law: &[Vec<f64>]) -> Vec<f64> {
         let columns = sensitivities.iter();
-        let mut slopes: Vec<f64> = columns.map(|column| dot(&self.pull, column)).collect();
+        let mut slopes: Vec<f64> = columns.map(|column| dot(&self.gradient, column)).collect();
         for (slope, force) in slopes[first..].iter_mut().zip(law) {
-            *slope += dot(&self.marks, force);
+            *slope += dot(&self.factors, force);
         }
         slopes
     }

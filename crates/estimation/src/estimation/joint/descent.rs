@@ -165,7 +165,7 @@ impl<'a> Descent<'a> {
         watch: Watch,
     ) -> Result<Course, Error> {
         let warm = !from.states.is_empty();
-        let mut course = self.moved(&from, from.values.clone(), warm)?;
+        let mut course = self.at(&from, from.values.clone(), warm)?;
         let mut length = f64::NAN;
         for step in 1..=MOST_STEPS {
             let settled = warm || step > JOINT_VARIANCE_STEPS;
@@ -198,7 +198,7 @@ impl<'a> Descent<'a> {
     ///
     /// # Errors
     /// As [`Self::descend`].
-    pub fn without(
+    pub fn without_frames(
         &self,
         course: &Course,
         members: &Range<usize>,
@@ -222,7 +222,7 @@ impl<'a> Descent<'a> {
     }
 
     /// All frames at other values.
-    fn moved(&self, course: &Course, values: Vec<f64>, settled: bool) -> Result<Course, Error> {
+    fn at(&self, course: &Course, values: Vec<f64>, settled: bool) -> Result<Course, Error> {
         let law = self.law.beginning_at(&values);
         let frames = self.frames.par_iter().enumerate();
         let states = frames.map(|(index, frame)| frame.at(&law, course.states.get(index), settled));
@@ -248,14 +248,14 @@ impl<'a> Descent<'a> {
             Some(scales) => (scales.clone(), VAGUE),
         };
         let mut step = inverse(&directions(&information, &scales), &scales, limit) * score;
-        let most = self.most(&course.values);
+        let most = self.largest_changes(&course.values);
         let share = step.iter().zip(&most).map(|(step, most)| step.abs() / most);
         step /= share.fold(1.0, f64::max);
         step
     }
 
     /// The largest change of each parameter.
-    fn most(&self, values: &[f64]) -> Vec<f64> {
+    fn largest_changes(&self, values: &[f64]) -> Vec<f64> {
         let scales = self.scales_at(values);
         let parameters = self.law.parameters().iter().zip(values).zip(scales);
         let most = parameters.map(|((parameter, value), scale)| {
@@ -293,7 +293,7 @@ impl<'a> Descent<'a> {
             let values = values
                 .map(|(value, change)| value + share * change)
                 .collect();
-            let next = self.moved(course, values, settled);
+            let next = self.at(course, values, settled);
             let worse = |next: &Course| {
                 settled
                     && next.misfit() > course.misfit() + ROUGH

@@ -7,10 +7,10 @@ use super::direction::Direction;
 use super::estimate::Step;
 use crate::statistics::Estimate;
 
-/// How near the likelihood at an end has to be: part of the reach.
+/// The tolerance of the root of the likelihood ratio at an end, relative to the reach.
 const NEAR: f64 = 0.05;
 
-/// Ends that are tried on one side.
+/// The largest number of ends that are tried on one side.
 const MOST_ENDS: usize = 3;
 
 /// Where the search has ended, with what the intervals follow from.
@@ -23,8 +23,8 @@ pub struct Ends<'a> {
     pub covariance: &'a DMatrix<f64>,
     /// Half the width of an interval in standard errors.
     pub reach: f64,
-    /// What is alike in all frames makes of each parameter: the meshes' own error, and that which forces have in common.
-    pub alike: &'a Step,
+    /// The error of each parameter due to errors that all frames have in common: those of forces, of pictures, and of meshes.
+    pub common_error: &'a Step,
     /// Combinations of parameters.
     pub directions: &'a [Direction],
 }
@@ -32,7 +32,7 @@ pub struct Ends<'a> {
 impl Ends<'_> {
     /// The values found with their intervals: where the misfit, the other parameters following, has risen by the square of the
     /// reach; by more where the noise correlates. Where no equilibrium is found on the way, the end is that of the standard error.
-    /// What is alike in all frames is added as if it were noise.
+    /// Errors that all frames have in common are added as if they were noise.
     pub fn intervals(&self, profiles: bool) -> Vec<Estimate> {
         let estimate = |index: usize| {
             let value = self.course.values[index];
@@ -40,19 +40,20 @@ impl Ends<'_> {
                 return Estimate::exact(value);
             }
             let variance = self.covariance[(index, index)].max(0.0);
-            let alike = self.alike[index];
-            let mut estimate = Estimate::new(value, variance.sqrt().hypot(alike), self.reach);
+            let common_error = self.common_error[index];
+            let mut estimate =
+                Estimate::new(value, variance.sqrt().hypot(common_error), self.reach);
             if profiles && variance > 0.0 {
                 let side = Side {
                     ends: self,
                     index,
-                    wider: variance / self.inverse[(index, index)],
+                    variance_ratio: variance / self.inverse[(index, index)],
                 };
                 let first = self.reach * variance.sqrt();
                 let [low, high] = self.descent.law.parameters()[index].bound.ends();
                 estimate.interval = [-first, first].map(|first| {
                     let off = side.end(first) - value;
-                    let end = value + off.hypot(self.reach * alike).copysign(first);
+                    let end = value + off.hypot(self.reach * common_error).copysign(first);
                     end.clamp(low, high)
                 });
             }
@@ -68,16 +69,16 @@ impl Ends<'_> {
     }
 }
 
-/// One parameter on its way to an end.
+/// The search for the end of one parameter's interval.
 struct Side<'a> {
     ends: &'a Ends<'a>,
     index: usize,
-    /// The variance over that by white noise.
-    wider: f64,
+    /// The variance over that due to white noise.
+    variance_ratio: f64,
 }
 
 impl Side<'_> {
-    /// The end of the interval that begins to be looked for at a distance from the value found.
+    /// The end of the interval; the search begins at this distance from the value found.
     fn end(&self, first: f64) -> f64 {
         let value = self.ends.course.values[self.index];
         let bound = self.ends.descent.law.parameters()[self.index].bound;
@@ -99,10 +100,10 @@ impl Side<'_> {
         value + distance
     }
 
-    /// √(rise of the misfit) with the parameter there.
-    fn root(&self, there: f64) -> Option<f64> {
+    /// √(rise of the misfit) at another value of the parameter.
+    fn root(&self, value: f64) -> Option<f64> {
         let mut from = self.ends.course.clone();
-        from.values[self.index] = there;
+        from.values[self.index] = value;
         let course = self
             .ends
             .descent
@@ -112,6 +113,6 @@ impl Side<'_> {
             return None;
         }
         let rise = course.misfit() - self.ends.course.misfit();
-        (rise > 0.0).then(|| (rise / self.wider).sqrt())
+        (rise > 0.0).then(|| (rise / self.variance_ratio).sqrt())
     }
 }

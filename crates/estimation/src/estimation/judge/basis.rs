@@ -94,9 +94,9 @@ impl Basis<'_> {
         &self,
         nearest_field: &NearestField,
         edges: &[Edge],
-        goes: &dyn Fn(&str) -> bool,
+        is_released: &dyn Fn(&str) -> bool,
     ) -> Option<Model> {
-        let scored = released(nearest_field, edges, goes)?;
+        let scored = released(nearest_field, edges, is_released)?;
         Some(self.model(nearest_field, scored))
     }
 
@@ -191,9 +191,9 @@ fn is_stated(edge: &Edge) -> bool {
 pub fn released(
     nearest_field: &NearestField,
     edges: &[Edge],
-    goes: &dyn Fn(&str) -> bool,
+    is_released: &dyn Fn(&str) -> bool,
 ) -> Option<Scored> {
-    with_condition(nearest_field, edges, EdgeCondition::Unknown, goes)
+    with_condition(nearest_field, edges, EdgeCondition::Unknown, is_released)
 }
 
 /// The same with another condition of these edges; `None` too where they have it.
@@ -201,12 +201,12 @@ fn with_condition(
     nearest_field: &NearestField,
     edges: &[Edge],
     condition: EdgeCondition,
-    goes: &dyn Fn(&str) -> bool,
+    is_released: &dyn Fn(&str) -> bool,
 ) -> Option<Scored> {
     let mut relaxed = edges.to_vec();
     let mut any = false;
     for edge in &mut relaxed {
-        if is_stated(edge) && goes(&edge.segment.name) {
+        if is_stated(edge) && is_released(&edge.segment.name) {
             any |= edge.condition != condition;
             edge.condition = condition;
         }

@@ -48,7 +48,7 @@ struct Noise {
 /// A model under the noise that suits it best.
 struct Likelihood {
     /// −2 ln L.
-    surprise: f64,
+    deviance: f64,
     /// Parameters that were fitted.
     effective: f64,
 }
@@ -204,7 +204,7 @@ impl Reference {
         let count = model.residual.len() as f64;
         let more = (after.effective - before.effective).max(1.0);
         let freedom = (count - after.effective).max(1.0);
-        let reduction = ((before.surprise - after.surprise) / count).exp_m1();
+        let reduction = ((before.deviance - after.deviance) / count).exp_m1();
         let gain = reduction.max(0.0) * freedom;
         Trial {
             probability: f_tail([more, freedom], gain / more),
@@ -217,7 +217,7 @@ impl Reference {
 /// The likelihood of a model under the noise which makes it likeliest; `None` where its parameters are not determined.
 fn likeliest(noises: &[Noise], model: &Model) -> Option<Likelihood> {
     let all = noises.iter().filter_map(|noise| noise.likelihood(model));
-    all.min_by(|a, b| a.surprise.total_cmp(&b.surprise))
+    all.min_by(|a, b| a.deviance.total_cmp(&b.deviance))
 }
 
 impl Noise {
@@ -243,7 +243,7 @@ impl Noise {
             .as_ref()
             .map_or(0.0, Whitening::log_determinant);
         Some(Likelihood {
-            surprise: count * (square / count).ln() + 2.0 * log_determinant,
+            deviance: count * (square / count).ln() + 2.0 * log_determinant,
             effective,
         })
     }

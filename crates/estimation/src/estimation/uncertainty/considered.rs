@@ -1,5 +1,5 @@
 //! The errors of a field due to parameters that the equations take as known: those of the law, as far as its card records their
-//! uncertainty, and the distances of free edges ([`super::unknown_places`]).
+//! uncertainty, and the distances of free edges ([`super::unknown_edges`]).
 //!
 //! ```text
 //! sₖ = ∂u/∂cₖ = −K⁻¹ ∂F/∂cₖ
@@ -39,7 +39,7 @@ pub struct Considered {
     /// sₖ.
     changes: Vec<Vec<f64>>,
     /// D.
-    answers: DMatrix<f64>,
+    responses: DMatrix<f64>,
     /// Σ.
     squares: DMatrix<f64>,
 }
@@ -53,7 +53,7 @@ impl NearestField<'_> {
         let law = self.equations.task.knowledge.uncertain_law();
         let neighbours = law.map_or(Vec::new(), |law| law.neighbours());
         let slopes = self.equations.slopes_between(neighbours, &self.field)?;
-        let (strips, of_places) = self.unknown_places(edges);
+        let (strips, of_edges) = self.edge_strips(edges);
         let (edges, strips): (Vec<usize>, Vec<_>) = strips.into_iter().unzip();
         let (of_law, all) = (slopes.len(), slopes.len() + strips.len());
         let mut squares = DMatrix::zeros(all, all);
@@ -64,25 +64,25 @@ impl NearestField<'_> {
         let forces = [slopes, strips].concat();
         let tangent = &mut self.equations.newton.tangent;
         let changes = tangent.changes(&forces).map_err(solve)?;
-        let mut answers = DMatrix::zeros(self.fit.covariance.nrows(), all);
+        let mut responses = DMatrix::zeros(self.fit.covariance.nrows(), all);
         for (index, (change, force)) in changes.iter().zip(&forces).enumerate() {
             let target = self.target(change, force)?;
-            answers.set_column(index, &(&self.fit.covariance * target));
+            responses.set_column(index, &(&self.fit.covariance * target));
         }
-        let of_places = self.given_the_data(
-            of_places,
+        let of_edges = self.given_the_data(
+            of_edges,
             &changes[of_law..],
-            &answers.columns_range(of_law..),
+            &responses.columns_range(of_law..),
         );
         squares
             .view_range_mut(of_law.., of_law..)
-            .copy_from(&of_places);
+            .copy_from(&of_edges);
         Ok(Considered {
             slopes: forces,
             of_law,
             edges,
             changes,
-            answers,
+            responses,
             squares,
         })
     }
@@ -92,7 +92,7 @@ impl NearestField<'_> {
         &self,
         before: DMatrix<f64>,
         changes: &[Vec<f64>],
-        answers: &DMatrixView<f64>,
+        responses: &DMatrixView<f64>,
     ) -> DMatrix<f64> {
         let Some(factor) = before.clone().cholesky().filter(|_| !changes.is_empty()) else {
             return before;
@@ -109,7 +109,7 @@ impl NearestField<'_> {
         let mut information = factor.inverse();
         for (index, column) in at_markers.column_iter().enumerate() {
             let column = column.as_slice();
-            let by_field = answers.tr_mul(&target_of(column, &self.linear.design));
+            let by_field = responses.tr_mul(&target_of(column, &self.linear.design));
             let added = -target_of(column, &at_markers) - by_field;
             information.column_mut(index).add_assign(&added);
         }
@@ -128,7 +128,7 @@ impl NearestField<'_> {
         let measured = equations.task.knowledge.measured_forces().iter();
         let forces = measured.map(|measured| {
             let grip = equations.grip_of_edge(measured, &self.field)?;
-            Ok(dot(&grip.pull, change) + dot(&grip.marks, force))
+            Ok(dot(&grip.gradient, change) + dot(&grip.factors, force))
         });
         let forces = forces.collect::<Result<Vec<f64>, Error>>()?;
         Ok(equations.target_with_forces(&at_markers, &forces, &self.linear, &self.variances))
@@ -144,9 +144,9 @@ impl NearestField<'_> {
         let along = |body: usize, axis: usize| -> Result<[f64; 2], Error> {
             let (grip, row) = self.grip_of(body, axis, &[])?;
             let slope = |index: usize, _| {
-                let direct = dot(&grip.marks, &considered.slopes[index])
-                    + dot(&grip.pull, &considered.changes[index]);
-                direct + dot(&row, considered.answers.column(index).as_slice())
+                let direct = dot(&grip.factors, &considered.slopes[index])
+                    + dot(&grip.gradient, &considered.changes[index]);
+                direct + dot(&row, considered.responses.column(index).as_slice())
             };
             let mut slopes = DVector::from_fn(considered.slopes.len(), slope);
             if self.equations.task.knowledge.edge_gap.is_some() {
@@ -168,11 +168,11 @@ impl NearestField<'_> {
 
     /// Appends the parameters to those of the field.
     pub(in crate::estimation) fn consider(&mut self, considered: Considered) {
-        let (answers, squares) = (&considered.answers, &considered.squares);
-        let (before, more) = (answers.nrows(), answers.ncols());
-        let across = answers * squares;
+        let (responses, squares) = (&considered.responses, &considered.squares);
+        let (before, more) = (responses.nrows(), responses.ncols());
+        let across = responses * squares;
         let mut joined = DMatrix::zeros(before + more, before + more);
-        let of_field = &self.fit.covariance + &across * answers.transpose();
+        let of_field = &self.fit.covariance + &across * responses.transpose();
         joined
             .view_range_mut(..before, ..before)
             .copy_from(&of_field);

@@ -37,7 +37,7 @@ impl NearestField<'_> {
             design: DMatrix::from_column_slice(error.len(), 1, error),
             deviation: Some(MESH_ERROR_FACTOR),
         }));
-        let (strips, squares) = self.unknown_places(edges);
+        let (strips, squares) = self.edge_strips(edges);
         if !strips.is_empty() {
             let independent = squares.cholesky().map(|factor| factor.l());
             let strips: Vec<_> = strips.into_iter().map(|(_, strip)| strip).collect();

@@ -48,7 +48,7 @@ impl NearestField<'_> {
     }
 
     /// ∂p/∂e; must be called before the covariance includes the noise found, because it has to be M⁻¹.
-    pub(in crate::estimation) fn scale_answer(&self) -> DVector<f64> {
+    pub(in crate::estimation) fn scale_response(&self) -> DVector<f64> {
         let column = self.equations.magnified(&self.field);
         let target = self
             .equations
@@ -59,12 +59,12 @@ impl NearestField<'_> {
     /// The changes that follow from ∂p/∂e.
     pub(in crate::estimation) fn scale_change(
         &self,
-        answer: &DVector<f64>,
+        response: &DVector<f64>,
     ) -> Result<ScaleChange, Error> {
         let slopes = self.equations.law_slopes(&self.parameters, &self.field)?;
         let along = |body: usize, axis: usize| -> Result<f64, Error> {
             let (_, row) = self.grip_of(body, axis, &slopes)?;
-            Ok(dot(&row, answer.as_slice()))
+            Ok(dot(&row, response.as_slice()))
         };
         Ok(ScaleChange {
             forces: self.by_body(along)?,
@@ -72,9 +72,9 @@ impl NearestField<'_> {
     }
 
     /// Adds the variance of the scale to the covariance.
-    pub(in crate::estimation) fn take_scale(&mut self, answer: &DVector<f64>) {
+    pub(in crate::estimation) fn include_scale(&mut self, response: &DVector<f64>) {
         let deviation = self.equations.task.knowledge.scale_deviation;
-        self.fit.covariance += answer * answer.transpose() * (deviation * deviation);
+        self.fit.covariance += response * response.transpose() * (deviation * deviation);
     }
 }
 

@@ -16,7 +16,7 @@ use crate::markers::columns::{self, Names, Units, length, plain};
 use crate::units::{self, Dimension};
 
 const LENGTHS: [Names; 4] = {
-    let ([x, y], [ux, uy]) = (columns::PLACES, columns::DISPLACEMENTS);
+    let ([x, y], [ux, uy]) = (columns::POSITIONS, columns::DISPLACEMENTS);
     [x, y, ux, uy]
 };
 const RENAME: &str =

@@ -110,7 +110,7 @@ impl EdgePlace {
         let wider = decimals(half, 4);
         let words = format!(
             "subset {} and step {} pixels according to {}",
-            subset.size, subset.step, subset.told_by
+            subset.size, subset.step, subset.source
         );
         let message = format!(
             "the specimen's edge is assumed to lie {wider} mm outside the outermost markers, half a subset: {words}"

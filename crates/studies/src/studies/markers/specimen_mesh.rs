@@ -213,7 +213,7 @@ fn of_markers(request: &Request, field: &MarkerFiles) -> Result<SpecimenMesh, Er
 /// The places that tell of the outline: those of lost markers too, but for those in gaps that are holes without them, if gaps are
 /// holes; and how many these are. Where so many are lost that the others are scattered, gaps are no holes.
 fn positions(series: &MarkerSeries, gaps_are_holes: bool) -> (Vec<[f64; 2]>, usize) {
-    let places = series.places_of_found();
+    let places = series.tracked_positions();
     let mut lost = series.lost.clone();
     if gaps_are_holes && !lost.is_empty() {
         let outline = Outline::of_points(&places).ok();

@@ -23,7 +23,7 @@ const MOST_TRACED_PARTS: f64 = 12.0;
 
 impl NearestField<'_> {
     /// The forces of the strips beside the free edges in N/mm, each with the number of its edge, and Σ in mm²; nothing where the edges are known.
-    pub(in crate::estimation) fn unknown_places(
+    pub(in crate::estimation) fn edge_strips(
         &self,
         edges: &[Edge],
     ) -> (Vec<(usize, Vec<f64>)>, DMatrix<f64>) {
