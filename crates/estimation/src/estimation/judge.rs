@@ -18,6 +18,7 @@ mod basis;
 mod linear_model;
 mod rows;
 
+use alternatives::Column;
 use basis::{Basis, LEVEL, improvement, released};
 pub use linear_model::{Model, Reference};
 pub use rows::{Rows, soundness};
@@ -65,39 +66,47 @@ pub fn judge(
     };
     let at_markers = mesh_error.map(|error| &error.markers[..]);
     let granted = nearest_field.granted(edges, at_markers)?;
-    let gap = nearest_field.equations.task.knowledge.edge_gap;
     let base = Model::of_search(&rows, nearest_field).granting(&rows, &granted);
-    let mut noises = base.noises(&rows);
-    let noise = noises.first();
+    let noises = base.noises(&rows);
     let columns = nearest_field.alternatives()?;
     let all =
         all.map(|scored| Model::of_score(&rows, nearest_field, scored).granting(&rows, &granted));
     let basis = Basis {
-        reference: Reference::new(&rows, noise, &base, all.as_ref(), &columns),
+        reference: Reference::new(&rows, noises.first(), &base, all.as_ref(), &columns),
         rows: &rows,
         granted: &granted,
         base: &base,
     };
-    let mut trials = basis.try_columns(nearest_field, &columns);
-    let together = all
-        .as_ref()
-        .map(|model| basis.try_out(nearest_field, Alternative::Edges, model));
-    let correlation = noise.map(|noise| rows.correlation(noise));
+    judgement(
+        &basis,
+        nearest_field,
+        edges,
+        (&columns, all.as_ref()),
+        noises,
+    )
+}
+
+/// Tries the alternatives, among them the model with all edges released, and draws the conclusion.
+fn judgement(
+    basis: &Basis,
+    nearest_field: &mut NearestField,
+    edges: &[Edge],
+    (columns, all): (&[Column], Option<&Model>),
+    mut noises: Vec<CorrelatedNoise>,
+) -> Result<Judgement, Error> {
+    let mut trials = basis.try_columns(nearest_field, columns);
+    let together = all.map(|model| basis.try_out(nearest_field, Alternative::Edges, model));
+    let noise = noises.first();
+    let correlation = noise.map(|noise| basis.rows.correlation(noise));
     let few = few(correlation, nearest_field);
     let level = if few.is_some() { STRICT } else { LEVEL };
-    let mut against = improvement(trials.iter().chain(&together), level);
-    let mut unknown_edges = None;
-    if let (Some(_), Some(gap)) = (against, gap)
-        && basis.explains_all(
-            nearest_field,
-            edges,
-            (&columns, noise),
-            (all.as_ref(), level),
-        )
-    {
-        unknown_edges = Some(Reason::UnknownEdges(gap));
-        against = None;
-    }
+    let improvement = improvement(trials.iter().chain(&together), level);
+    let gap = nearest_field.equations.task.knowledge.edge_gap.filter(|_| {
+        improvement.is_some()
+            && basis.explains_all(nearest_field, edges, (columns, noise), (all, level))
+    });
+    let unknown_edges = gap.map(Reason::UnknownEdges);
+    let against = improvement.filter(|_| unknown_edges.is_none());
     let mut contradiction = None;
     if against.is_some() {
         let (of_edges, contradicted) = basis.of_edges(nearest_field, edges, (together, level))?;
@@ -105,7 +114,7 @@ pub fn judge(
         contradiction = contradicted;
     }
     // An alternative that hardly changes the misfit explains nothing.
-    let residual_rms = base.residual_rms(&rows, nearest_field);
+    let residual_rms = basis.base.residual_rms(basis.rows, nearest_field);
     trials.retain(|trial| trial.residual_rms < EXPLAINS * residual_rms);
     trials.sort_by(|a, b| b.gain.total_cmp(&a.gain));
     let undecided = unknown_edges.or(few);
@@ -116,7 +125,7 @@ pub fn judge(
     let verdict = Verdict {
         answer,
         correlation,
-        worst: against.and_then(|_| rows.worst(nearest_field)),
+        worst: against.and_then(|_| basis.rows.worst(nearest_field)),
         reasons: against.or(undecided).into_iter().collect(),
         trials,
         residual_rms: Some(residual_rms).filter(|rms| rms.is_finite()),

@@ -101,11 +101,8 @@ impl<'a> Reader<'a> {
         chosen: &FoundColumns<Role>,
         reading: &ReadSettings,
     ) -> Result<Self, Error> {
-        let layout = if chosen.any(&Role::LENGTHS) {
-            &NAMED
-        } else {
-            recognise(table)
-        };
+        let named = chosen.any(&Role::LENGTHS);
+        let layout = if named { &NAMED } else { recognise(table) };
         let head = |role: Role, names: Names| match chosen.of(role) {
             Some(index) => Some((index, columns::unit_of(table, index))),
             None => find(table, names),
@@ -119,13 +116,14 @@ impl<'a> Reader<'a> {
         let units = Units {
             given: reading.unit,
             corrected: common,
-            pixels: layout.pixels || chosen.any(&Role::LENGTHS) && names().flatten().any(is_pixel),
+            pixels: layout.pixels || named && names().flatten().any(is_pixel),
         };
-        let of = |index: usize| match &heads[index] {
-            Some(head) => length(table, head.clone(), units),
-            None => {
-                required(table, roles[index].1, ASSIGN).and_then(|head| length(table, head, units))
-            }
+        let of = |index: usize| {
+            let head = match &heads[index] {
+                Some(head) => head.clone(),
+                None => required(table, roles[index].1, ASSIGN)?,
+            };
+            length(table, head, units)
         };
         let deviation = head(Role::StandardDeviation, layout.deviation);
         let plain_column = |role, names| chosen.of(role).or_else(|| plain(table, names));
@@ -158,7 +156,7 @@ impl<'a> Reader<'a> {
         };
         let hint = "write a number in every field of this column, or leave it empty where nothing was found";
         table.check_numbers_or_holes(reader.read(), hint)?;
-        reader.check_columns(layout, chosen.any(&Role::LENGTHS), &reading.ignored_columns)
+        reader.check_columns(layout, named, &reading.ignored_columns)
     }
 
     /// Refuses columns that nobody reads, and points that leave their plane; where the user names the columns, others are only

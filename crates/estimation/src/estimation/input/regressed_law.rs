@@ -43,17 +43,8 @@ impl RegressedLaw {
     /// the law does not follow from the values of its parameters alone.
     pub fn of_card(card: &Card, keys: &[&str]) -> Result<Self, Diagnostic> {
         let fault = |message: String, hint: &str| Err(Diagnostic::error("", message).hint(hint));
-        let unknown = || {
-            let message = format!(
-                "the law of the card `{}` is not defined by its parameters alone",
-                card.name
-            );
-            let hint = "use a card whose law is given by parameters alone";
-            Diagnostic::error("", message).hint(hint)
-        };
-        let law = Law::named(&card.law_name).ok_or_else(unknown)?;
         let mut law = Self {
-            law,
+            law: Law::named(&card.law_name).ok_or_else(|| undefined(card))?,
             measures: (card.stress_measure, card.strain_measure),
             volume: card.volume,
             plane: card.law.plane_state(),
@@ -93,15 +84,13 @@ impl RegressedLaw {
         if law.is_law_of(card) {
             Ok(law)
         } else {
-            Err(unknown())
+            Err(undefined(card))
         }
     }
 
     /// The keys of the parameters that act on the law and are not zero.
     pub fn acting(&self) -> Vec<&'static str> {
-        let resistance = self.all[self.all.len() - usize::from(self.volume.is_some())..]
-            .iter()
-            .cloned();
+        let resistance = self.all.last().filter(|_| self.volume.is_some()).cloned();
         let acting = self.law_parameters().into_iter().chain(resistance);
         acting
             .filter(|one| one.value != 0.0)
@@ -217,6 +206,16 @@ impl RegressedLaw {
             _ => resisting.unwrap_or(law),
         }
     }
+}
+
+/// The refusal of a card whose law needs more than its parameters.
+fn undefined(card: &Card) -> Diagnostic {
+    let message = format!(
+        "the law of the card `{}` is not defined by its parameters alone",
+        card.name
+    );
+    let hint = "use a card whose law is given by parameters alone";
+    Diagnostic::error("", message).hint(hint)
 }
 
 /// The resistance to a change of volume, as the card states it.
