@@ -98,9 +98,9 @@ pub fn estimate(
     }
 }
 
-/// The nearest field and the residuals of its markers alone, as a start of something else: without verdict, intervals and stresses. Edges without
-/// a stated condition are loaded, or may be freed by the data, which takes many times longer. As [`estimate`], it has no displacement where it
-/// ends at gross errors.
+/// The nearest field and the residuals of its markers, without verdict, intervals and stresses: the start of another computation. Edges without
+/// a stated condition are loaded; with `may_free_edges` the data decide which of them are free, which takes many times longer. The displacement
+/// is empty where gross errors end the estimate.
 ///
 /// # Errors
 /// As [`estimate`], and where measured forces leave no solution.

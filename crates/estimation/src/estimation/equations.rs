@@ -199,7 +199,7 @@ impl<'a> Equations<'a> {
         self.settle_by(Newton::solve, state, settings)
     }
 
-    /// The same by one way of Newton's method.
+    /// The same by one of Newton's methods.
     fn settle_by(
         &mut self,
         method: NewtonMethod,
@@ -264,7 +264,7 @@ impl<'a> Equations<'a> {
         }
     }
 
-    /// The laws with each of the law's parameters a little smaller and larger, and twice the difference.
+    /// For each of the law's parameters the laws with a little smaller and a little larger value.
     pub fn neighbours(&self, parameters: &[f64]) -> Vec<Neighbours> {
         let regressed = self.task.knowledge.law.as_ref();
         let values = self.law_values(parameters);

@@ -38,7 +38,7 @@ impl NearestField<'_> {
             .collect()
     }
 
-    /// The forces of the bodies that hold the sheet, with the mesh's own error if it is known, and the standard errors due to considered
+    /// The forces of the bodies that hold the sheet, with the discretisation error if it is known, and the standard errors due to considered
     /// parameters if there are any.
     pub fn forces(
         &self,
@@ -90,8 +90,8 @@ impl NearestField<'_> {
         parameters.map(estimate).collect()
     }
 
-    /// The measured forces beside those of the field, which also depend on the picture's scale and on considered parameters; called before the covariance includes the scale.
-    /// Forces that a parameter of the law follows are no check.
+    /// The measured forces compared with those of the field, which also depend on the picture's scale and on considered parameters; must be called
+    /// before the covariance includes the scale. A force that a parameter of the law fits exactly is no check.
     pub(super) fn force_checks(
         &self,
         mesh_error: Option<&MeshError>,

@@ -16,8 +16,8 @@ const LEVEL: f64 = 0.01;
 /// Steps of a trial: a free edge that does not contradict the data takes few.
 const TRIAL_STEPS: usize = 20;
 
-/// Searches, and decides which of the edges without a stated condition are free. Where the physics is weighted, both begin in exact
-/// equilibrium: forces on the interior stand for the way there, and for edges that carry nothing.
+/// Searches, and decides which of the edges without a stated condition are free. Where the physics is weighted, edges are decided in exact
+/// equilibrium, and the search begins there: otherwise forces on the interior could represent the load of an edge.
 ///
 /// # Errors
 /// As the search with the edges as they are.
@@ -67,7 +67,7 @@ fn nearest<'a>(task: &Task<'a>, edges: &[Edge], most: usize) -> Result<NearestFi
     Equations::new(task, edges)?.run(most)
 }
 
-/// The same from a field with other edges, and anew where that leads to none.
+/// The same from a field with other edges; if that leads to no solution, from the usual start.
 fn nearest_from<'a>(
     task: &Task<'a>,
     edges: &[Edge],
@@ -97,8 +97,8 @@ fn freed(given: &[Edge], open: &[usize]) -> Vec<Edge> {
     edges
 }
 
-/// The nearest field with all edges to be tested free, where no edge that is loaded instead, in one linearised step, makes the misfit smaller
-/// than noise would. Gross errors could hide what such an edge does.
+/// The nearest field with all edges to be tested free, if loading any of them, in one linearised step, reduces the misfit no more than noise
+/// would. Not used with robust weights, because gross errors could hide the effect of such an edge.
 fn all_free<'a>(task: &Task<'a>, given: &[Edge]) -> Option<(NearestField<'a>, Vec<Edge>)> {
     let open = open(given);
     if open.is_empty() || task.knowledge.robust != Robust::No {
@@ -125,8 +125,8 @@ fn all_free<'a>(task: &Task<'a>, given: &[Edge]) -> Option<(NearestField<'a>, Ve
     settle(task, free, edges).ok()
 }
 
-/// Frees edges as long as the data do not contradict it, and two remain loaded: where one alone would be, no force could act, however
-/// little the data know of it.
+/// Frees edges as long as the data do not contradict it and two remain loaded: a single loaded edge would exclude every force, even where the
+/// data do not determine the force.
 fn from_loaded<'a>(
     task: &Task<'a>,
     mut nearest_field: NearestField<'a>,
@@ -183,7 +183,7 @@ fn from_free<'a>(
     settle(task, nearest_field, edges)
 }
 
-/// The nearest field with the edges that the data have left loaded as edges of the body.
+/// The nearest field when all tested edges, free or loaded, are edges of the body: fields may then be singular at other corners.
 fn settle<'a>(
     task: &Task<'a>,
     mut nearest_field: NearestField<'a>,
@@ -199,8 +199,8 @@ fn settle<'a>(
     Ok((nearest_field, edges))
 }
 
-/// The probability that noise alone increases the misfit by so much when a free edge is taken as free; where that is below a level, that noise
-/// and what is granted do: the mesh's own error, and edges that only markers show.
+/// The probability that noise alone causes the difference of the misfits with an edge free and loaded. If it is below the level, the
+/// probability that noise and the admitted changes cause it: the discretisation error, and edges that only markers show.
 fn probability(
     (loaded, design, variances): (&Fit, &DMatrix<f64>, &VarianceComponents),
     free: &mut NearestField,
@@ -232,8 +232,8 @@ fn probability(
 }
 
 impl NearestField<'_> {
-    /// Whether the force on an edge is so large and well known that the edge needs no trial: more than a third of the
-    /// largest one, and more than ten times its standard error.
+    /// Whether the edge needs no trial because its force is large and well known: more than a third of the largest one, and more than ten
+    /// times its standard error.
     fn is_pulled(&self, index: usize) -> Result<bool, Error> {
         const LARGE: f64 = 1.0 / 3.0;
         const SURE: f64 = 10.0;
@@ -253,7 +253,7 @@ impl NearestField<'_> {
         }))
     }
 
-    /// Σ w ω r² where every marker is off by a millionth of what they move: data without noise have no more digits.
+    /// Σ w ω r² of residuals of a millionth of the displacements: data without noise have no more digits.
     fn rounding(&self, variances: &VarianceComponents) -> f64 {
         const ROUNDING: f64 = 1e-6;
         let observations = self.observations();

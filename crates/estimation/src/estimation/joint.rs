@@ -14,8 +14,8 @@
 //! that of the noise found; Jₖ' is the markers' part of it. ρ is the correlation of a marker's residuals in one frame and the next: noise of the
 //! picture at rest is common to all frames.
 //!
-//! The error of the meshes themselves is the effect on the right-hand sides of the equilibria on cells half as large, at the same motions
-//! of the edges: e = S⁻¹ Σ (−AᵀWHd/v − Gᵀd_F/σ), reduced as tₖ is ([`MeshError`](super::search) has d, G and d_F of one frame). ± 1.96
+//! The discretisation error is the effect that the equilibria on cells half as large, at the same motions of the edges, have on the right-hand
+//! sides: e = S⁻¹ Σ (−AᵀWHd/v − Gᵀd_F/σ), reduced as tₖ is ([`MeshError`](super::search) has d, G and d_F of one frame). ± 1.96
 //! e is added to the intervals as if it were noise; it is alike in all frames, so that more frames do not reduce it.
 //!
 //! The effects of a standard deviation of the load cell's gain, and of one of the pictures' scale, on the right-hand
@@ -147,8 +147,7 @@ fn outcome(
     })
 }
 
-/// S⁻¹ (Σ Jₖ) S⁻¹, with the noise of markers counted as often as it is the same in other frames, and multiplied by
-/// the scatter of forces where it exceeds both noises.
+/// S⁻¹ (Σ Jₖ + ρ (K − 1) Jₖ') S⁻¹, multiplied by the scatter of forces where it exceeds both noises.
 fn covariance(
     parts: &[FrameInformation],
     inverse: &DMatrix<f64>,
@@ -162,7 +161,7 @@ fn covariance(
     inverse * (sum * widening) * inverse
 }
 
-/// The effects on each parameter of errors that all frames have in common: those of forces, of pictures, and of meshes, taken as independent.
+/// The error of each parameter due to errors that all frames have in common: those of forces, of pictures, and of meshes, as if independent.
 fn common_error(parts: &[FrameInformation], inverse: &DMatrix<f64>, mesh: Option<&Step>) -> Step {
     let common = [0, 1].map(|kind| {
         let targets = parts.iter().map(|part| &part.common[kind]);
@@ -174,13 +173,13 @@ fn common_error(parts: &[FrameInformation], inverse: &DMatrix<f64>, mesh: Option
     })
 }
 
-/// S⁻¹ Σ tₖ from the effects of the meshes' own errors on the right-hand sides, which are as alike in all frames as their meshes are.
+/// S⁻¹ Σ tₖ from the effects of the discretisation errors on the right-hand sides, which are the same where frames have the same mesh.
 fn mesh_error(parts: &[FrameInformation], inverse: &DMatrix<f64>) -> Option<Step> {
     let targets = parts.iter().map(|part| part.mesh.as_ref());
     Some(inverse * targets.sum::<Option<Step>>()?)
 }
 
-/// Half the width of a 95 % interval in standard errors, with so many degrees of freedom of the noise.
+/// Half the width of a 95 % interval in standard errors, with the degrees of freedom of an estimated noise.
 fn reach(descent: &Descent, freedom: f64) -> f64 {
     const LEAST_FREEDOM: f64 = 3.0;
     if descent.frames.iter().all(|frame| frame.knows_noise()) {
@@ -190,7 +189,7 @@ fn reach(descent: &Descent, freedom: f64) -> f64 {
     }
 }
 
-/// The number of equal frames with the same information on the parameters: (Σ s)²/Σ s² of the frames' shares s.
+/// K, the number of frames of equal information that would carry the same: (Σ s)²/Σ s² of the frames' shares s.
 fn equal_frames(parts: &[FrameInformation], inverse: &DMatrix<f64>) -> f64 {
     let shares = parts
         .iter()
@@ -201,7 +200,7 @@ fn equal_frames(parts: &[FrameInformation], inverse: &DMatrix<f64>) -> f64 {
     sum * sum / square.max(f64::MIN_POSITIVE)
 }
 
-/// The results of every frame: its share, and its forces with the law of the other groups of frames, where these determine one.
+/// The results of every frame: its share, and its forces predicted with the law of the other groups of frames, if these have forces.
 fn frame_outcomes(
     descent: &Descent,
     course: &Course,

@@ -23,11 +23,11 @@ use basis::{Basis, LEVEL, improvement, released};
 pub use linear_model::{Model, Reference};
 pub use rows::{Rows, soundness};
 
-/// The same where few values are independent and the correlation is uncertain: right equations have come to 1e-8 with noise correlated
-/// over six spacings, a wrong law to 1e-35 (`gelbench validate interval-coverage`).
+/// The level instead of [`LEVEL`] where few values are independent and the correlation is uncertain: right equations have had probabilities
+/// down to 1e-8 with noise correlated over six spacings, a wrong law 1e-35 (`gelbench validate interval-coverage`).
 const STRICT: f64 = 1e-12;
 
-/// An alternative explains something where it leaves less than this share of the misfit.
+/// An alternative explains the data better where its residuals are below this share of those of the equations.
 const EXPLAINS: f64 = 0.98;
 
 /// With fewer independent values than this beside the parameters, correlated noise cannot be distinguished from a misfit, and its
@@ -137,7 +137,7 @@ fn judgement(
     })
 }
 
-/// Evidence against the equations counts most, then that there can be none.
+/// Evidence against the equations takes precedence over reasons why the data cannot judge.
 fn answer(
     against: Option<Reason>,
     few: Option<Reason>,
@@ -151,7 +151,7 @@ fn answer(
     }
 }
 
-/// Noise with too few independent values, which is no evidence against the equations.
+/// The reason why the data cannot judge, where the noise has too few independent values.
 fn few(correlation: Option<NoiseCorrelation>, nearest_field: &NearestField) -> Option<Reason> {
     let few =
         |one: &NoiseCorrelation| 2.0 * one.independent - nearest_field.fit.effective < INDEPENDENT;
@@ -194,7 +194,7 @@ impl Rows {
         }
     }
 
-    /// The place at which the mean residual of a marker and its neighbours is largest.
+    /// The position at which the mean residual of a marker and its neighbours is largest.
     fn worst(&self, nearest_field: &NearestField) -> Option<Worst> {
         const NEIGHBOURS: usize = 8;
         let around = nearest(self.sites.positions(), NEIGHBOURS);

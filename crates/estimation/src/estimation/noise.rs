@@ -4,7 +4,7 @@
 //! Cov(p) = M⁻¹ (τ² ÃᵀRÃ + S) M⁻¹,   Ã = √(W/v) A                  M⁻¹ where the noise is white: R = 1, τ² = 1
 //! ```
 //!
-//! The field remains the one nearest to the data; its covariance is that of this field under the noise that was found.
+//! The field remains the one nearest to the data; only its covariance follows the noise that was found.
 
 use super::input::{Edge, Observations};
 use super::judge::Judgement;
@@ -20,7 +20,7 @@ const OFF: f64 = 1.25;
 /// Standardised residual from which on a marker is a gross error, even where noise is larger than elsewhere.
 const GROSS: f64 = 8.0;
 
-/// How often weights are adapted to noise that differs from place to place.
+/// How often weights are adapted to noise that varies over the sheet.
 const ROUNDS: usize = 3;
 
 /// Noise of the markers that differs from the assumed noise.
@@ -28,7 +28,7 @@ const ROUNDS: usize = 3;
 pub struct OtherNoise {
     /// The ratio of the markers' scatter to their stated noise, where they contradict it by its size or by its variation.
     pub ratio: Option<f64>,
-    /// How it differs from place to place.
+    /// How it varies over the sheet.
     pub unevenness: Option<Unevenness>,
 }
 
@@ -98,7 +98,7 @@ impl NearestField<'_> {
         }
     }
 
-    /// Whether the mesh's own error or rounding, which are no noise, make up much of the markers' residuals.
+    /// Whether a large part of the markers' residuals is the discretisation error or rounding, which are no noise.
     fn is_mesh_error(&self, markers: &[Option<MarkerEstimate>], edges: &[Edge]) -> bool {
         const MUCH: f64 = 0.2;
         const ROUNDING: f64 = 1e-6;
@@ -118,7 +118,7 @@ impl NearestField<'_> {
         mesh_error.is_some_and(|error| size(&|row| error.markers[row]) > MUCH * residual)
     }
 
-    /// The variation of the markers' noise from place to place; outliers count too, except those that no noise explains.
+    /// The variation of the markers' noise over the sheet; outliers count, except gross errors.
     fn unevenness(&self, markers: &[Option<MarkerEstimate>]) -> Option<Unevenness> {
         let observations = self.observations();
         if observations.reweighted >= ROUNDS {
@@ -137,7 +137,7 @@ impl NearestField<'_> {
     }
 
     /// The ratio of the markers' scatter to their stated noise, from the median of the standardised residuals, where
-    /// it is far from one or the noise differs anyhow.
+    /// it is far from one or the noise varies over the sheet (`other`).
     fn contradicted_noise(&self, markers: &[Option<MarkerEstimate>], other: bool) -> Option<f64> {
         // The standard error of ln of a deviation from the median.
         const ERROR: f64 = 0.72;
@@ -162,14 +162,14 @@ impl NearestField<'_> {
         (observations.reweighted > 0).then(|| [0, 1].map(along))
     }
 
-    /// The noise's standard deviation of a marker of mean weight in mm, as if it were white.
+    /// The standard deviation in mm of white noise for a marker of mean weight.
     pub(super) fn deviation(&self) -> f64 {
         let weights = &self.observations().weights;
         (self.variances.sound * weights.len() as f64 / weights.iter().sum::<f64>()).sqrt()
     }
 
-    /// Sets the covariance under the noise that was found, including what smoothing takes away; returns the degrees
-    /// of freedom of the noise's size where it is correlated.
+    /// Sets the covariance under the noise that was found, and adds the bias of smoothing; returns the degrees of freedom of the noise's size
+    /// where it is correlated.
     pub(super) fn widen(&mut self, judged: &Judgement) -> Option<f64> {
         let smoothing_bias = self.smoothing_bias();
         let freedom = self.include_noise(judged);
@@ -177,8 +177,8 @@ impl NearestField<'_> {
         freedom
     }
 
-    /// Sets the covariance under the noise that was found, of several the one that moves the markers most; returns the degrees of
-    /// freedom of its size where it is correlated.
+    /// Sets the covariance under the noise that was found, among several the one with the largest variance at the markers; returns the degrees
+    /// of freedom of its size where it is correlated.
     fn include_noise(&mut self, judged: &Judgement) -> Option<f64> {
         const LEAST: f64 = 3.0;
         let observations = self.observations();

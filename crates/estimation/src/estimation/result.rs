@@ -34,7 +34,7 @@ impl NearestField<'_> {
         let variance_ratio = judged.noises.first().map_or(1.0, |noise| noise.variance);
         let weights = &self.observations().weights;
         let mean = weights.iter().sum::<f64>() / weights.len() as f64;
-        // A misfit is not noise.
+        // Where the data are not explained, residuals are a misfit and not noise.
         let is_noise = judged.verdict.answer != Answer::NotExplained;
         Ok(FieldEstimate {
             displacement_error: self.displacement_error(mesh_error),
@@ -65,8 +65,8 @@ impl NearestField<'_> {
         })
     }
 
-    /// Adds all uncertainties of the field to the covariance, one after the other; figures that do not include all of
-    /// them are made on the way. Returns the beginning of an estimate.
+    /// Adds all uncertainties of the field to the covariance, one after the other. Returns an estimate with the results that must be computed
+    /// in between, because they do not include all uncertainties.
     fn include_uncertainties(
         &mut self,
         edges: &[Edge],
@@ -96,7 +96,7 @@ impl NearestField<'_> {
         self.include_scale(&scale);
         let forces = self.forces(reach, mesh_error, &by_all)?;
         let parameters = self.law_parameters(reach, mesh_error);
-        // Forces keep common distances of edges on the side that is possible.
+        // The intervals of forces do not include common distances of edges, which only increase forces.
         self.consider(considered);
         Ok(FieldEstimate {
             degrees_of_freedom: freedom,
@@ -157,7 +157,7 @@ impl NearestField<'_> {
         }
     }
 
-    /// The laws about that of the field, each with the column of its parameter: of those that are found, or else are considered.
+    /// The laws on both sides of that of the field, each with the index of its parameter: of parameters that are found, or else considered.
     fn neighbours(&self) -> Vec<(usize, Neighbours)> {
         let equations = &self.equations;
         let fitted = equations.neighbours(&self.parameters);
@@ -213,7 +213,7 @@ impl NearestField<'_> {
             (0..4).for_each(|component| rows[component][*column] += slope[component]);
         }
         let stress = response.first_piola_kirchhoff_stress;
-        // Where the better gradient turns the cell inside out, the whole stress is in doubt.
+        // Where the better gradient inverts the cell, the error is the stress itself.
         let (stress_off, thickness_off) =
             Kinematics::new(&PlaneTensor::from(better)).map_or((stress, thickness), |better| {
                 let thinner = specimen.thickness * law.thickness_stretch(&better) - thickness;
@@ -251,8 +251,8 @@ impl NearestField<'_> {
         all
     }
 
-    /// Cov(r) = v/w + (1 − 2ω) A M⁻¹ Aᵀ: a marker with trust has drawn the field to it, one without has not. An outlier is farther off than noise
-    /// and (2 e)² of the mesh's own error explain.
+    /// Cov(r) = v/w + (1 − 2ω) A M⁻¹ Aᵀ: a trusted marker (ω = 1) has drawn the field towards itself, one without trust (ω = 0) has not. An
+    /// outlier has a larger residual than noise and twice the discretisation error e explain.
     fn marker(&self, index: usize, mesh_error: [f64; 2], limit: f64) -> MarkerEstimate {
         let residuals = &self.fit.residual;
         let residual = Vector2::new(residuals[2 * index], residuals[2 * index + 1]);

@@ -16,7 +16,7 @@ pub const MOST_STEPS: usize = 100;
 /// Steps after which the variances are fixed: two of equal likelihood could alternate.
 pub const VARIANCE_STEPS: usize = 6;
 
-/// Length of a step in standard errors that is negligible, where fixed variances let steps shorten only slowly.
+/// The length of a negligible step in standard errors, once variances are fixed: steps may then become shorter only slowly.
 const NEAR: f64 = 0.03;
 
 /// The shortest share of a step.
@@ -38,7 +38,7 @@ pub struct NearestField<'a> {
     /// ζ of node after node.
     pub multipliers: Vec<f64>,
     pub steps: usize,
-    /// The mesh's own error, once it was needed.
+    /// The discretisation error, computed when it is first needed.
     pub known_mesh_error: OnceLock<Option<MeshError>>,
 }
 
@@ -83,7 +83,7 @@ impl<'a> Equations<'a> {
         self.run_from(state, variances, VARIANCE_STEPS, most)
     }
 
-    /// The same from a given state, with variances that the data change in so many first steps.
+    /// The same from a given state; the data change the variances in the first `adjusting` steps.
     ///
     /// # Errors
     /// As [`Self::run`].
@@ -138,7 +138,7 @@ impl<'a> Equations<'a> {
         }))
     }
 
-    /// The same from the field of another search, with its trust of the markers.
+    /// The same from the field of another search, with its trust in the markers.
     ///
     /// # Errors
     /// As [`Self::run`].
@@ -169,7 +169,7 @@ impl<'a> Equations<'a> {
         (state, variances)
     }
 
-    /// One linearised regression from the field of another search, with its trust of the markers.
+    /// One linearised regression from the field of another search, with its trust in the markers.
     ///
     /// # Errors
     /// As [`Self::run`].
@@ -179,7 +179,8 @@ impl<'a> Equations<'a> {
         self.score_at(&state, variances)
     }
 
-    /// The same where some edges move as the data say instead of as that search had it: they begin where its field has them.
+    /// The same for equations that free some of that search's conditions: these edges begin with the displacements of its field, already in
+    /// equilibrium.
     ///
     /// # Errors
     /// As [`Self::run`].
@@ -278,8 +279,8 @@ impl<'a> Equations<'a> {
         (residual.norm_squared() / residual.len() as f64).max(1e-12 * largest(field).powi(2))
     }
 
-    /// Takes the step, or as much of it as leaves all cells admissible and the law's parameters near; equilibrium is
-    /// restored where it is lost. At most the share `most` of it is taken; returns whether it was cut beyond that.
+    /// Takes the share `most` of the step, or a smaller one that leaves all cells admissible and changes no parameter of the law by more than half;
+    /// equilibrium is restored where it is lost. Returns whether the share was smaller.
     fn advance(
         &mut self,
         state: &mut SearchState,
@@ -310,8 +311,8 @@ impl<'a> Equations<'a> {
     }
 }
 
-/// The share of the next step, of the last one, and the ratio of their lengths: 1 − share where the regression is
-/// linear. Steps that do not become as much shorter oscillate about the nearest field.
+/// The share of the next step, from that of the last one and the ratio of the lengths of both, which is 1 − share where the regression is
+/// linear. Steps that become shorter less quickly oscillate about the nearest field.
 fn next_share(share: f64, ratio: f64) -> f64 {
     if ratio > 1.0 - 0.5 * share {
         (0.5 * share).max(SHORTEST)

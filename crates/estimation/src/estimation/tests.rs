@@ -115,7 +115,7 @@ fn without_noise_the_truth_comes_back() {
 }
 
 #[test]
-fn wrong_input_is_told() {
+fn wrong_input_is_refused() {
     let (truth, mesh) = (Truth::new(), estimate_mesh());
     let good = truth.markers(0.1, 1);
     let message = |markers: &[Marker], knowledge: &Knowledge| match estimate(

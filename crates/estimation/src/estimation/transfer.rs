@@ -1,4 +1,4 @@
-//! A field of another mesh and method, without noise, brought onto a finer mesh and into equilibrium.
+//! A field computed on another mesh by another method, without noise, interpolated onto a finer mesh and brought into equilibrium.
 //!
 //! ```text
 //! minimise ½ ‖u − ū‖²   subject to   F(u) = 0 at inner nodes and free edges,   u = ū at the other edges
@@ -32,7 +32,7 @@ const NEWTON: NewtonSettings = NewtonSettings {
 const RULE: &str =
     "equilibrium holds exactly; edges that are not free keep the displacements of the given field";
 
-/// Parts of the given field that are solved one after the other where the field is too far from equilibrium.
+/// Shares of the given field that are solved one after the other; each row is tried where the one before leads to no equilibrium.
 const PARTS: [&[f64]; 3] = [
     &[1.0],
     &[0.5, 1.0],
@@ -141,7 +141,7 @@ fn rigid(mesh: &Mesh, nodes: &[usize], field: &[f64]) -> Vec<[f64; 2]> {
     nodes.iter().map(|node| motion.at(arm(node))).collect()
 }
 
-/// The equilibrium with the imposed values, its residual, and the number of parts that it took.
+/// The equilibrium with the imposed values, its residual, and the number of shares that it took.
 fn equilibrium(
     newton: &mut Newton,
     energy: &SheetEnergy,

@@ -26,7 +26,7 @@ impl Body {
         [0, 1].map(|axis| of_reactions(&self.shares[axis], reactions, axis))
     }
 
-    /// The standard deviation along an axis of the part that may belong to others, if each division of it were equally likely.
+    /// The standard deviation along an axis of the part that may belong to others, if all divisions of it are equally likely.
     pub fn division_error(&self, reactions: &[f64], axis: usize) -> f64 {
         let square = |(share, factors): &(f64, Vec<Share>)| {
             (share * of_reactions(factors, reactions, axis)).powi(2) / 3.0
@@ -155,10 +155,10 @@ mod tests {
                 .find(|(node, _)| *node == wanted)
                 .map(|(_, factor)| *factor)
         };
-        // What is left at the corner with the bottom belongs to the pad.
+        // The rest of the reaction at the corner with the bottom belongs to the pad.
         assert_eq!(factor(pad, corner.unwrap()), Some(1.0));
         assert_eq!(factor(right, corner.unwrap()), None);
-        // The tractions beside it belong to their own edge: that of the middle node is four times that of an end.
+        // The tractions at the next node belong to its edge: that of the middle node is four times that of an end.
         let neighbour = mesh.nodes.iter().position(|node| *node == [6.0, 0.5]);
         let [first, other] = [right, pad].map(|body| factor(body, neighbour.unwrap()).unwrap());
         assert!((first - 1.25).abs() < 1e-12 && (other + 0.25).abs() < 1e-12);

@@ -50,7 +50,7 @@ impl EdgeDisplacements {
         }
     }
 
-    /// ∂u_B/∂p, and how far u_B is from a field there.
+    /// ∂u_B/∂p, and the difference of a field from u_B.
     pub fn toward(&self, field: &[f64], parameters: usize) -> (DMatrix<f64>, DVector<f64>) {
         let count = self.unknowns.len();
         let (mut rows, mut values) = (DMatrix::zeros(count, parameters), DVector::zeros(count));

@@ -10,13 +10,13 @@ use crate::estimation::regression::Roughness;
 use crate::mesh::Mesh;
 use crate::statistics::{BSpline, Ends};
 
-/// Most spans of a spline along one edge; half as many more where they become shorter towards both ends.
+/// The largest number of spans of a spline along one edge; 1.5 times as many where they become shorter towards both ends.
 const MOST_SPANS: usize = 12;
 
-/// Markers' spacings in a span.
+/// The length of a span in spacings of the markers.
 const SPACINGS: f64 = 1.5;
 
-/// An edge farther than so many spacings from the nearest smooth curve, in the mean square, is not smooth.
+/// The root-mean-square distance from the nearest smooth curve, in spacings, above which an edge is not smooth.
 const UNEVEN: f64 = 0.05;
 
 /// A coefficient of a spline along one axis: a parameter, or an unknown of the field that another part moves.
@@ -44,10 +44,11 @@ enum Part {
     Smooth {
         name: String,
         spline: BSpline,
-        /// Along one axis and the other.
+        /// Along x and along y.
         coefficients: [Vec<Coefficient>; 2],
         nodes: Vec<SmoothNode>,
-        /// The first parameter of the gradient G₁₁, G₁₂, G₂₁, G₂₂ by which nodes beside the smooth curve move otherwise than it does.
+        /// The first parameter of G₁₁, G₁₂, G₂₁, G₂₂, which times a node's offset from the smooth curve adds to its displacement; `None` where
+        /// the edge is smooth.
         gradient: Option<usize>,
     },
 }
@@ -56,7 +57,7 @@ enum Part {
 #[derive(Clone, Debug)]
 struct SmoothNode {
     node: usize,
-    /// On 0…1.
+    /// The arc length over that of the edge.
     position: f64,
     /// From the smooth curve that is nearest to the edge, in mm.
     offset: [f64; 2],
@@ -147,8 +148,8 @@ impl EdgeMotion {
         });
     }
 
-    /// A smooth edge, whose displacement may be singular at its ends. A spline of the arc is no uniform deformation where the edge is not as
-    /// smooth as that, as one that follows markers: u = Σ qₖBₖ + G (X − Σ xₖBₖ), with the nearest curve Σ xₖBₖ.
+    /// A smooth edge, whose displacement may be singular at its ends. Where the edge is not smooth, because it follows markers, a spline of the
+    /// arc length does not include uniform deformations; then u = Σ qₖBₖ + G (X − Σ xₖBₖ), with the nearest curve Σ xₖBₖ.
     fn smooth(&mut self, segment: &Segment, singular: [bool; 2], spacing: f64, moved: &mut Movers) {
         let length = segment.length();
         let edges = segment.nodes.len() - 1;
@@ -318,7 +319,8 @@ impl SmoothNode {
     }
 }
 
-/// How far points lie from the spline that begins and ends at theirs and is nearest to the others; `None` where it fits them all.
+/// The vectors to points from the spline through the first and the last of them that is nearest to the others; `None` where they do not
+/// determine it.
 fn offsets(spline: &BSpline, along: &[f64], points: &[[f64; 2]]) -> Option<Vec<[f64; 2]>> {
     let (count, last) = (spline.count(), points.len() - 1);
     let mut values = DMatrix::zeros(points.len(), count);
@@ -337,7 +339,7 @@ fn offsets(spline: &BSpline, along: &[f64], points: &[[f64; 2]]) -> Option<Vec<[
     Some(rest.row_iter().map(|row| [row[0], row[1]]).collect())
 }
 
-/// Records that nodes are moved along an axis by whatever came first.
+/// Records that nodes are held along an axis, unless another part already moves them.
 fn hold(nodes: &[usize], axis: usize, moved: &mut Movers) {
     for unknown in nodes.iter().map(|node| 2 * node + axis) {
         moved

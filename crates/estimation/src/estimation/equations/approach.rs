@@ -1,19 +1,19 @@
-//! Edges moved to where they belong without folding the cells beside them.
+//! Edges moved to their imposed displacements without inverting the adjacent cells.
 //!
-//! On a fine mesh an edge cannot jump by more than the size of a cell. The inside is then moved along with the tangent,
-//! Δu = −K⁻¹ K_B Δu_B, as far in one go as all cells stay admissible.
+//! On a fine mesh an edge cannot move by more than the size of a cell at once. The inner nodes are then moved too, by the tangent,
+//! Δu = −K⁻¹ K_B Δu_B, in moves as long as all cells stay admissible.
 
 use crate::error::SolveFault;
 use crate::solve::{Assembly, Newton, Potential};
 
-/// Moves allowed, and the shortest one.
+/// The largest number of moves, and the shortest one.
 const MOST_MOVES: usize = 40;
 const SHORTEST: f64 = 1.0 / 256.0;
 
 /// Gives the held unknowns of a field the values that they have in `wanted`.
 ///
 /// # Errors
-/// A [`SolveFault`] where even the shortest move folds a cell, or the tangent cannot be factorised.
+/// A [`SolveFault`] where even the shortest move inverts a cell, or the tangent cannot be factorised.
 pub fn approach(
     newton: &mut Newton,
     potential: &dyn Potential,
@@ -80,7 +80,7 @@ mod tests {
     use crate::problem::sheet_energy::SheetEnergy;
 
     #[test]
-    fn an_edge_moves_by_more_than_a_cell_and_folds_none() {
+    fn an_edge_moves_by_more_than_a_cell_and_inverts_none() {
         let mesh = Mesh::plate([10.0, 10.0], [40, 40], CellShape::Quad4);
         let law = Card::load("neo-hooke", Path::new(".")).unwrap().law;
         let energy = SheetEnergy::of_mesh(law, &mesh, 1.0);

@@ -1,4 +1,4 @@
-//! Smooth forces on the sheet's interior that stand for what the physics lacks.
+//! Smooth forces on the sheet's interior that represent what the physics lacks.
 //!
 //! ```text
 //! F(u) = f,   fᵢ = ∫ Nᵢ b dA,   b = Σ cₖ ψₖ                                     b in N/mm², ψ products of cubic B-splines

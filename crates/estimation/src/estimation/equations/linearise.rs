@@ -10,7 +10,7 @@ use crate::problem::corner_forces::Share;
 use crate::solve::Assembly;
 use crate::solve::vector::{add_scaled, dot};
 
-/// The equations and the observations linearised about a place.
+/// The equations and the observations linearised about a state.
 pub struct Linear {
     /// −K⁻¹ F.
     pub newton_step: Vec<f64>,
@@ -18,12 +18,12 @@ pub struct Linear {
     pub sensitivities: Vec<Vec<f64>>,
     /// H ∂u/∂p.
     pub design: DMatrix<f64>,
-    /// The derivatives of the measured forces by p, and what is measured more than there, over the deviations.
+    /// The derivatives of the measured forces with respect to p, and measured less computed forces, both over the standard deviations.
     pub force_rows: (DMatrix<f64>, DVector<f64>),
 }
 
 impl Equations<'_> {
-    /// The equations and the observations about a place.
+    /// Linearises the equations and the observations about a state.
     pub(in crate::estimation) fn linearise(
         &mut self,
         state: &SearchState,
@@ -125,7 +125,7 @@ pub struct Grip {
 }
 
 impl Grip {
-    /// Its derivatives by p; those from `first` on change the law too, by ∂F/∂θ in `law`.
+    /// Its derivatives with respect to p. The parameters from `first` on are those of the law; `law` is ∂F/∂θ.
     pub fn slopes(&self, sensitivities: &[Vec<f64>], first: usize, law: &[Vec<f64>]) -> Vec<f64> {
         let columns = sensitivities.iter();
         let mut slopes: Vec<f64> = columns.map(|column| dot(&self.gradient, column)).collect();

@@ -36,8 +36,8 @@ pub struct Knowledge {
     pub noise: Option<f64>,
     /// How markers that are far off are weighted.
     pub robust: Robust,
-    /// Whether an estimate that gives all markers their weight ends where gross errors make up their noise, with nothing but the markers'
-    /// residuals: another weight is needed first.
+    /// Whether an estimate without robust weights ends where gross errors make up the noise of the markers. Its result then has the markers'
+    /// residuals only; robust weights are needed.
     pub ends_at_gross_errors: bool,
     /// Whether equilibrium is exact.
     pub physics: Physics,
@@ -49,7 +49,7 @@ pub struct Knowledge {
     pub edge_accuracy: f64,
     /// Relative standard deviation of the scale of the picture: a specimen that comes nearer to its camera appears to grow.
     pub scale_deviation: f64,
-    /// A law of the cells that belong to no region, in the place of the specimen's, with parameters that are found with the field.
+    /// A law with parameters that are found with the field; it replaces the specimen's law of the cells that belong to no region.
     pub law: Option<RegressedLaw>,
     /// The law of the cells that belong to no region with its uncertainty, which the errors include; not used where parameters are found.
     pub uncertain_law: Option<UncertainLaw>,

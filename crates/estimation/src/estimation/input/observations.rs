@@ -20,7 +20,7 @@ pub struct Observations {
     pub markers: usize,
     /// Index of each marker that lies on the mesh.
     pub chosen: Vec<usize>,
-    /// Their places in mm.
+    /// Their positions at rest in mm.
     pub positions: Vec<[f64; 2]>,
     /// Their displacements in mm.
     pub displacements: Vec<[f64; 2]>,
@@ -28,7 +28,7 @@ pub struct Observations {
     pub weights: Vec<f64>,
     /// Whether the noise is known.
     pub known_noise: bool,
-    /// How often the weights have been adapted to noise that differs from place to place.
+    /// The number of times that the weights were adapted to noise that varies over the sheet.
     pub reweighted: usize,
     /// H: two rows per marker.
     pub interpolation: SparseRows,
@@ -149,7 +149,7 @@ impl Observations {
             .clone()
     }
 
-    /// Places and displacements.
+    /// Positions and displacements.
     pub fn points(&self) -> Points<'_> {
         Points {
             positions: &self.positions,

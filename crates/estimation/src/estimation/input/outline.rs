@@ -10,7 +10,7 @@ use crate::mesh::{Mesh, corners};
 /// A part of the boundary that has one condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Segment {
-    /// Its group, or where it lies.
+    /// Its group, or its position.
     pub name: String,
     /// Number of its condition; `None` where no group names it.
     pub condition: Option<usize>,
@@ -202,7 +202,7 @@ fn divide(
     }
 }
 
-/// Nodes along edges and their places in mm.
+/// Nodes along edges and their arc lengths in mm.
 fn walk<'a>(mesh: &Mesh, edges: impl Iterator<Item = &'a Vec<usize>>) -> (Vec<usize>, Vec<f64>) {
     let (mut nodes, mut positions, mut length) = (Vec::new(), vec![0.0], 0.0);
     for edge in edges {
@@ -218,7 +218,7 @@ fn walk<'a>(mesh: &Mesh, edges: impl Iterator<Item = &'a Vec<usize>>) -> (Vec<us
     (nodes, positions)
 }
 
-/// Numbers parts that no group names and that would have one name, as they follow each other; numbers that named ones have are left out.
+/// Numbers parts of the same name that no group names, in their order; numbers are left out if a named part would then have the same name.
 fn number_alike(all: &mut [Segment]) {
     let named = all.iter().filter(|part| part.condition.is_some());
     let taken: BTreeSet<String> = named.map(|part| part.name.clone()).collect();
@@ -242,13 +242,13 @@ fn number_alike(all: &mut [Segment]) {
     }
 }
 
-/// Makes groups of the parts between corners that are named as results name them, such as `bottom 2` of a side in pieces; other names,
-/// and those of groups, are left as they are.
+/// Makes groups of the parts between corners whose names in results are given, such as `bottom 2` for a side of several parts; names of
+/// groups and unknown names have no effect.
 pub fn name_parts<'a>(mesh: &mut Mesh, names: impl Iterator<Item = &'a str>) {
     let wanted: Vec<&str> = names
         .filter(|name| !mesh.groups().contains_key(*name))
         .collect();
-    // A mesh that cannot be divided is told of where it is used.
+    // The user of the mesh reports that it cannot be divided.
     let Some(parts) = (!wanted.is_empty())
         .then(|| segments(mesh, &[]).ok())
         .flatten()
@@ -276,7 +276,7 @@ fn group_of(mesh: &Mesh, nodes: &[usize]) -> Option<String> {
     smallest.map(|(name, _)| name.clone())
 }
 
-/// Where a part lies.
+/// A name that gives the position of a part.
 fn describe(mesh: &Mesh, nodes: &[usize], outer: bool) -> String {
     let at = |node: usize| {
         let [x, y] = mesh.nodes[node];

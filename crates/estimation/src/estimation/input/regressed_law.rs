@@ -24,7 +24,7 @@ pub struct RegressedLaw {
     positions: Vec<usize>,
 }
 
-/// A law with one parameter a little smaller and larger, and the width between.
+/// A law with one parameter a little smaller and a little larger, and the difference of both values.
 pub type Neighbours = ([Arc<dyn HyperelasticLaw>; 2], f64);
 
 /// The key that stands for all parameters of a card.
@@ -147,7 +147,7 @@ impl RegressedLaw {
         other
     }
 
-    /// The same law with stresses that are so many times as large; `None` unless all parameters that are stresses are to be found.
+    /// The same law with stresses multiplied by a factor; `None` unless all parameters that are stresses are to be found.
     pub fn with_stress_times(&self, factor: f64) -> Option<Self> {
         let mut stresses = self
             .law_parameters()
@@ -166,7 +166,7 @@ impl RegressedLaw {
         Some(self.beginning_at(&values.collect::<Vec<_>>()))
     }
 
-    /// The laws with each of the parameters a little smaller and larger than these values, and twice the difference.
+    /// For each of the parameters the laws with a little smaller and a little larger value.
     pub fn neighbours(&self, values: &[f64]) -> Vec<Neighbours> {
         const STEP: f64 = 1e-5;
         let pair = |index: usize| {

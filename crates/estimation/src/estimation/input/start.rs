@@ -128,7 +128,7 @@ struct Rows {
 }
 
 impl Rows {
-    /// Every so many of the markers.
+    /// The rows of every `stride`-th marker.
     fn new(points: &Points, degree: usize, stride: usize) -> Self {
         let monomials = Monomials::new(points.positions, degree);
         let positions = points.positions.iter().step_by(stride);

@@ -16,7 +16,7 @@ pub struct Edge {
     pub condition: EdgeCondition,
     /// Whether the data choose between loaded and free.
     pub tested: bool,
-    /// Where the data have chosen: the probability of the misfit of the free edge.
+    /// The probability of the misfit if the edge is free, where the data have chosen.
     pub probability: Option<f64>,
     /// Whether it is an edge of the body, at whose corners fields may be singular. Where a mesh ends inside of the
     /// body it is not; as long as the data choose, it is taken as one.

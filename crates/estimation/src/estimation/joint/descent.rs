@@ -18,7 +18,7 @@ const MOST_STEPS: usize = 40;
 /// Steps after which smoothness and noise of the frames are fixed, so that the misfit has a minimum.
 const JOINT_VARIANCE_STEPS: usize = 4;
 
-/// Length of a step in standard errors that is negligible.
+/// The length of a negligible step, in standard errors.
 const CLOSE: f64 = 0.02;
 
 /// The largest change of a parameter in one step, relative to its scale, and to the distance to the end of its bound.
@@ -41,12 +41,12 @@ pub struct Course {
     pub values: Vec<f64>,
     pub states: Vec<State>,
     pub steps: usize,
-    /// Why it ended before the least misfit: frames have no equilibrium farther on.
+    /// Why it ended before the least misfit: a frame has no equilibrium at the next values.
     pub ended: Option<String>,
 }
 
 impl Course {
-    /// First values only.
+    /// A course that begins at these values, without states.
     pub fn of_start(values: Vec<f64>) -> Self {
         Self {
             values,
@@ -194,7 +194,7 @@ impl<'a> Descent<'a> {
         }))
     }
 
-    /// The values on which all frames but some members agree, beginning with those of all; `None` where no force remains.
+    /// The values of the least misfit of all frames but `members`, beginning with those of all frames; `None` where no force remains.
     ///
     /// # Errors
     /// As [`Self::descend`].
@@ -221,7 +221,7 @@ impl<'a> Descent<'a> {
         Ok(Some(rest.descend(from, None, watch)?.values))
     }
 
-    /// All frames at other values.
+    /// The states of all frames at other values.
     fn at(&self, course: &Course, values: Vec<f64>, settled: bool) -> Result<Course, Error> {
         let law = self.law.beginning_at(&values);
         let frames = self.frames.par_iter().enumerate();
@@ -254,7 +254,7 @@ impl<'a> Descent<'a> {
         step
     }
 
-    /// The largest change of each parameter.
+    /// The largest change of each parameter in one step.
     fn largest_changes(&self, values: &[f64]) -> Vec<f64> {
         let scales = self.scales_at(values);
         let parameters = self.law.parameters().iter().zip(values).zip(scales);
@@ -274,9 +274,9 @@ impl<'a> Descent<'a> {
             .collect()
     }
 
-    /// Takes the step, or as much of it as all frames can follow and, once smoothness and noise are fixed, reduces the misfit or
-    /// the next step. Where the model leaves large residuals, steps of the linearised frames end where the score vanishes, which
-    /// is close to the least misfit but not there: near it the misfit rises with steps that become shorter.
+    /// Takes the largest share of the step at which all frames have an equilibrium and, once smoothness and noise are fixed, the misfit
+    /// or the next step becomes smaller. Where the model leaves large residuals, steps of the linearised frames end where the score
+    /// vanishes, which is close to the least misfit but not at it: near it the misfit rises although steps become shorter.
     fn advance(
         &self,
         course: &Course,

@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
-/// Relative standard error of a combination of parameters from which on it is not determined: within two standard errors it may be zero, or double.
+/// The relative standard error from which on a combination of parameters counts as not determined: two standard errors are then its own size.
 pub const VAGUE: f64 = 0.5;
 
 /// Relative standard error up to which a combination takes part in the first search.

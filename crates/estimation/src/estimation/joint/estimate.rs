@@ -67,7 +67,7 @@ pub struct JointEstimate {
     pub independent: f64,
     /// Steps of the search.
     pub steps: usize,
-    /// Why the search ended before the least misfit, if it did: beyond it, frames have no equilibrium.
+    /// Why the search ended before the least misfit, if it did: frames have no equilibrium at the next values.
     pub ended: Option<String>,
 }
 
@@ -145,7 +145,7 @@ impl JointEstimate {
     }
 }
 
-/// Called with the next action, for a waiting user.
+/// Reports progress: called with a description of the next action.
 pub type Watch<'a> = &'a (dyn Fn(&str) + Sync);
 
 /// A step in θ, or the score behind it.

@@ -51,7 +51,7 @@ pub struct FrameInformation {
     pub spread_of_markers: DMatrix<f64>,
     /// −2 ln L of its independent values.
     pub deviance: f64,
-    /// The contribution of its mesh's own error to the score; `None` where that is not known.
+    /// The contribution of its discretisation error to the score, if that is known.
     pub mesh: Option<Step>,
     /// The contributions to the score of one standard deviation of the common error of all forces, and of all pictures.
     pub common: [Step; 2],
@@ -73,12 +73,12 @@ pub struct CrossPrediction {
     pub residual_rms: f64,
 }
 
-/// The equations linearised about a field, with the law's parameters among the unknowns.
+/// The equations linearised about a field, with the law's parameters among the unknown parameters.
 struct LawEquations {
     normal: NormalEquations,
     /// The derivatives of the markers.
     design: DMatrix<f64>,
-    /// The effect of the mesh's own error on the right-hand side.
+    /// The effect of the discretisation error on the right-hand side.
     mesh: Option<DVector<f64>>,
     /// The effects on it of the common errors of forces, and of pictures.
     common: [DVector<f64>; 2],
@@ -246,7 +246,7 @@ impl<'a> Frame<'a> {
         search.run_from(state.clone(), variances.clone(), adjusting, MOST_STEPS)
     }
 
-    /// The equations about a field, and what the law's parameters have of them.
+    /// The equations linearised about a field, and reduced to the law's parameters.
     fn law_equations(
         &self,
         nearest: NearestField,

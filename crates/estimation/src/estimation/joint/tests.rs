@@ -23,12 +23,12 @@ struct Series {
 }
 
 impl Series {
-    /// Markers and forces with noise of so many mm, and so much of each force.
+    /// Markers with noise in mm, and forces with noise relative to each force.
     fn new(stretches: &[f64], noise: [f64; 2], seed: u64) -> Self {
         Self::on([26, 14], stretches, noise, seed)
     }
 
-    /// The same of a mesh with so many cells.
+    /// The same on a mesh with these numbers of cells.
     fn on(cells: [usize; 2], stretches: &[f64], noise: [f64; 2], seed: u64) -> Self {
         let law = RegressedLaw::of_card(
             &Card::load("meunier-yeoh", Path::new(".")).unwrap(),
@@ -140,7 +140,7 @@ fn noise_leaves_the_truth_within_the_intervals_and_likelihood_agrees_with_errors
 }
 
 #[test]
-fn what_small_strains_do_not_tell_is_said_and_stays_as_the_card_has_it() {
+fn what_small_strains_do_not_determine_is_reported_and_keeps_the_cards_value() {
     let series = Series::new(&[0.02, 0.04], [0.02, 0.01], 3);
     let result = estimated(&series.frames(), &series.law, false);
     let vague = result.directions.iter().filter(|one| !one.is_determined());
@@ -153,7 +153,7 @@ fn what_small_strains_do_not_tell_is_said_and_stays_as_the_card_has_it() {
 }
 
 #[test]
-fn without_a_force_nothing_is_told_of_a_stiffness() {
+fn without_a_force_no_stiffness_is_determined() {
     let series = Series::new(&[0.2], [0.02, 0.01], 4);
     let mut frames = series.frames();
     frames[0].knowledge.forces.clear();
@@ -217,7 +217,7 @@ fn intervals_hold_a_factor_that_all_forces_have_in_common() {
     assert!(held(0.01) && !held(0.0));
 }
 
-/// Forces that scatter more than is said are told, and intervals hold it.
+/// A scatter of forces above the stated one is reported, and intervals include it.
 #[test]
 fn forces_that_scatter_more_than_stated_widen_the_intervals() {
     let [calm, wild] = [0.01, 0.06].map(|noise| {

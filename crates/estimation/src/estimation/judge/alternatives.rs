@@ -133,7 +133,7 @@ impl NearestField<'_> {
     }
 }
 
-/// 1, x, y, x², xy, y² of a place, from −1 to 1 between the lower left and the upper right corner of the specimen.
+/// 1, x, y, x², xy, y² of a position, from −1 to 1 between the lower left and the upper right corner of the specimen.
 fn shapes(position: [f64; 2], [low, high]: [[f64; 2]; 2]) -> [f64; 6] {
     let [x, y] = [0, 1].map(|axis| {
         let size = (high[axis] - low[axis]).max(f64::MIN_POSITIVE);

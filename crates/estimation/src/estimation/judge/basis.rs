@@ -11,10 +11,11 @@ use crate::estimation::search::{NearestField, Scored};
 use crate::estimation::uncertainty::{Granted, MovedEdge};
 use crate::statistics::CorrelatedNoise;
 
-/// Probability under noise below which an alternative contradicts the equations. Seven are tried, and smoothness is chosen by the data.
+/// The probability under noise below which an alternative contradicts the equations: so small because seven are tried, and the data choose the
+/// smoothness.
 pub const LEVEL: f64 = 1e-5;
 
-/// Free edges that lie elsewhere leave no more than so many times the residual of released ones: an edge that is loaded leaves far more.
+/// Free edges are taken for loaded ones, rather than misplaced, where their residual is more than this multiple of that of released edges.
 const ALMOST: f64 = 3.0;
 
 /// The conditions that an edge may have instead of a stated one.
@@ -34,8 +35,8 @@ pub struct Basis<'a> {
 }
 
 impl Basis<'_> {
-    /// What edges explain, released one by one, with other conditions, or elsewhere; and the stated conditions that are contradicted at a level,
-    /// beside the trial with all edges released.
+    /// The trials of edges: released one by one, with other conditions, or at other positions, after `together`, the trial with all edges released;
+    /// and the stated conditions that the data contradict at a level.
     pub fn of_edges(
         &self,
         nearest_field: &mut NearestField,
@@ -55,8 +56,8 @@ impl Basis<'_> {
         Ok((trials, contradiction))
     }
 
-    /// Whether nothing improves the fit below a level where the outer free edges are released, which only markers show, and these lie almost
-    /// where they would explain it too; beside the model with all edges released.
+    /// Whether no alternative, nor the model `all` with all edges released, improves the fit at a level once the outer free edges, which only
+    /// markers show, are released, and whether the residual of these edges as they are is small enough for misplaced free edges.
     pub fn explains_all(
         &self,
         nearest_field: &NearestField,
@@ -89,7 +90,7 @@ impl Basis<'_> {
             .any(|(alternative, design)| improves(alternative, &loaded.with(self.rows, [design])))
     }
 
-    /// The model with some edges released, and what is granted.
+    /// The model with some edges released, and with the admitted changes.
     fn released(
         &self,
         nearest_field: &NearestField,
@@ -100,12 +101,12 @@ impl Basis<'_> {
         Some(self.model(nearest_field, scored))
     }
 
-    /// The model of a regression, and what is granted.
+    /// The model of a regression, with the admitted changes.
     fn model(&self, nearest_field: &NearestField, scored: Scored) -> Model {
         Model::of_score(self.rows, nearest_field, scored).granting(self.rows, self.granted)
     }
 
-    /// What each of some columns explains.
+    /// The trial of each column.
     pub fn try_columns(&self, nearest_field: &NearestField, columns: &[Column]) -> Vec<Trial> {
         let trials = columns.iter().map(|(alternative, design)| {
             let model = self.base.with(self.rows, [design]);
@@ -126,7 +127,7 @@ impl Basis<'_> {
         }
     }
 
-    /// What each of the edges with a stated condition explains by itself where it is released.
+    /// The trial of each of the edges with a stated condition, released alone.
     fn edge_by_edge(&self, nearest_field: &NearestField, edges: &[Edge]) -> Vec<Trial> {
         let names = stated(edges).into_iter();
         let trials = names.filter_map(|name| {
@@ -136,7 +137,7 @@ impl Basis<'_> {
         trials.collect()
     }
 
-    /// What an edge with a stated condition explains with each of those that it may have instead.
+    /// The trials of an edge with a stated condition under each of the other conditions.
     fn other_conditions(
         &self,
         nearest_field: &NearestField,
@@ -153,7 +154,7 @@ impl Basis<'_> {
         trials.collect()
     }
 
-    /// What an edge at another position explains, and how far away it lies; `None` where the data do not determine that.
+    /// The trial of an edge at another position, with its distance; `None` where the data do not determine the distance.
     fn moved(&self, nearest_field: &NearestField, (part, design): MovedEdge) -> Option<Trial> {
         let outwards = self.reference.factor(self.rows, self.base, &design)?;
         let model = self.base.with(self.rows, [&design]);
@@ -196,7 +197,7 @@ pub fn released(
     with_condition(nearest_field, edges, EdgeCondition::Unknown, is_released)
 }
 
-/// The same with another condition of these edges; `None` too where they have it.
+/// The same with another condition of these edges; `None` also where they have it already.
 fn with_condition(
     nearest_field: &NearestField,
     edges: &[Edge],

@@ -32,11 +32,11 @@ pub struct Model {
 /// F = (e^(Λ/n) − 1) (n − p)/(p − p₀)        p₀, p: parameters without and with the alternative; white noise: the usual F
 /// ```
 ///
-/// Correlated noise of the equations' own residuals, which may be a misfit, and that which remains with all alternatives, which may
-/// be too short: an alternative counts where it is likelier than both let the equations be.
+/// One noise is that of the residuals of the equations, which may contain a misfit; the other one is that of the residuals with all alternatives,
+/// whose correlation length may be too short. The equations, too, have the likelier of both.
 pub struct Reference {
     noises: Vec<Noise>,
-    /// That of the equations; `None` where their parameters are not determined.
+    /// The likelihood of the equations; `None` where their parameters are not determined.
     equations: Option<Likelihood>,
 }
 
@@ -45,7 +45,7 @@ struct Noise {
     variance: f64,
 }
 
-/// A model under the noise that suits it best.
+/// A model under its likelier noise.
 struct Likelihood {
     /// −2 ln L.
     deviance: f64,
@@ -54,7 +54,7 @@ struct Likelihood {
 }
 
 impl Model {
-    /// That of a regression about the field that was found, with its conditions or others.
+    /// The model of a regression about the nearest field, with its conditions or others.
     fn new(
         rows: &Rows,
         equations: &Equations,
@@ -72,14 +72,14 @@ impl Model {
         }
     }
 
-    /// That of a search.
+    /// The model of a search.
     pub fn of_search(rows: &Rows, nearest_field: &NearestField) -> Self {
         let (fit, variances) = (&nearest_field.fit, &nearest_field.variances);
         let design = nearest_field.linear.design.clone();
         Self::new(rows, &nearest_field.equations, design, fit, variances)
     }
 
-    /// That of one regression with other conditions.
+    /// The model of one regression with other conditions.
     pub fn of_score(rows: &Rows, nearest_field: &NearestField, scored: Scored) -> Self {
         let (fit, variances) = (&scored.fit, &scored.variances);
         let design = scored.linear.design;
@@ -181,7 +181,7 @@ impl Reference {
         Self { noises, equations }
     }
 
-    /// The factor of one further column that fits best beside the equations.
+    /// The factor of one further column that, together with the equations, fits best.
     pub fn factor(&self, rows: &Rows, base: &Model, design: &DMatrix<f64>) -> Option<f64> {
         let model = base.with(rows, [design]);
         let last = model.design.ncols().checked_sub(1)?;
@@ -190,7 +190,7 @@ impl Reference {
             remaining
                 .regression(&model)
                 .best(&model.held, &model.slope, remaining.variance)?;
-        // Columns are added with a length of their own.
+        // The model scales its columns.
         let scaled = rows.scaled(design.clone());
         Some(best[last] * model.design.column(last).norm() / scaled.norm())
     }

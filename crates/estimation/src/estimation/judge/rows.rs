@@ -6,17 +6,17 @@ use crate::estimation::regression::{Fit, VarianceComponents, squares};
 use crate::estimation::search::{MESH_ERROR_FACTOR, MeshError, NearestField};
 use crate::statistics::{Sites, chi_squared_limit, extremes, nearest};
 
-/// Fewer markers carry no information on each other.
+/// The least number of markers whose residuals can show a correlation.
 const FEWEST: usize = 30;
 
 /// Rows of sound markers: trusted by at least one half, and not outliers.
 pub struct Rows {
     /// Numbers of the markers among those on the mesh.
     pub chosen: Vec<usize>,
-    /// Their places.
+    /// Their positions.
     pub sites: Sites,
-    /// Of each component of each, 1/√(s²/(w ω) + e²): s the noise's standard deviation, e the mesh's own error there, of which a
-    /// common factor is granted besides.
+    /// 1/√(s²/(w ω) + e²) of each component of each marker: s the noise's standard deviation, e the discretisation error there, a common factor
+    /// of which is also an admitted change.
     scales: Vec<f64>,
     /// Difference of the largest and the smallest coordinates, in mm.
     pub extent: [f64; 2],
@@ -25,7 +25,7 @@ pub struct Rows {
 }
 
 impl Rows {
-    /// The rows; `None` where there are few, or where the residuals are no more than the mesh's own error and the rounding of numbers.
+    /// The rows; `None` where there are few, or where the residuals are no more than the discretisation error and the rounding of numbers.
     pub fn new(
         nearest_field: &NearestField,
         sound: &[f64],
@@ -34,7 +34,7 @@ impl Rows {
         let observations = nearest_field.observations();
         let count = observations.positions.len();
         let mut chosen: Vec<usize> = (0..count).filter(|row| sound[*row] > 0.0).collect();
-        // Where most are outliers, sound markers cannot be distinguished.
+        // Where most markers are outliers, sound ones cannot be distinguished.
         if 2 * chosen.len() < count {
             chosen = (0..count).collect();
         }
@@ -127,7 +127,7 @@ pub fn soundness(weights: &[f64], fit: &Fit, variances: &VarianceComponents) -> 
     rows.map(trust).collect()
 }
 
-/// Whether the residuals are no more than twice the mesh's own error, or a millionth of the displacement.
+/// Whether the residuals are no more than twice the discretisation error, or a millionth of the displacement.
 fn leaves_nothing(
     nearest_field: &NearestField,
     rows: &[usize],

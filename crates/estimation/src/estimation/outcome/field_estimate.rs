@@ -13,9 +13,10 @@ use crate::statistics::{Estimate, robust_deviation};
 
 /// The field nearest to the markers.
 ///
-/// Standard errors come from the noise of the markers, to first order, and from the mesh's own error e: √(s² + e²).
+/// Standard errors come from the noise of the markers, to first order, and from the discretisation error e: √(s² + e²).
 /// For all quantities e follows from the same equations on cells half as large; for a large mesh only stress and
-/// thickness have it, from the recovered gradient. Standard errors are valid where the verdict has intervals. `± reach · standard error` is the 95 % interval.
+/// thickness include it, from the recovered gradient. Standard errors are valid where the verdict has intervals. `± reach · standard error` is
+/// the 95 % interval.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
 pub struct FieldEstimate {
     /// ux, uy of node after node in mm.
@@ -40,10 +41,10 @@ pub struct FieldEstimate {
     /// Whether the noise was given; otherwise it is estimated from the residuals of the markers.
     pub known_noise: bool,
     /// The ratio of the markers' scatter to their stated noise, where they contradict it by its size or by its
-    /// variation from place to place: the size of the noise is then estimated.
+    /// variation over the sheet: the size of the noise is then estimated.
     pub noise_ratio: Option<f64>,
     /// The least and the largest standard deviation of the noise of markers along x and along y in mm, where it was found to
-    /// differ from place to place or between components, and the data are explained: markers are then weighted accordingly.
+    /// vary over the sheet or between components, and the data are explained: markers are then weighted accordingly.
     pub noise_range: Option<[[f64; 2]; 2]>,
     /// The number of parameters that the data have determined: the trace of the matrix that maps the measured displacements to the fitted ones.
     pub effective_parameters: f64,
@@ -70,7 +71,7 @@ pub struct FieldEstimate {
     /// The standard errors of the forces along x and y in N due to the uncertainty of the law that its card records, which their intervals
     /// include, in the order of the forces; empty where it records none.
     pub law_deviations: Vec<[f64; 2]>,
-    /// Whether the standard errors of displacements, forces and parameters include the mesh's own error, which is not
+    /// Whether the standard errors of displacements, forces and parameters include the discretisation error, which is not
     /// known for meshes with too many cells.
     pub holds_mesh_error: bool,
     /// The relative growth of the force in 1/mm with the distance that all free edges lie farther out: ∮ Ψ ds/∫ Ψ dA
@@ -78,7 +79,7 @@ pub struct FieldEstimate {
     pub growth: f64,
     /// The sum of the forces of all edges and on the interior, relative to the largest of them.
     pub imbalance: f64,
-    /// The measured forces beside those of the field.
+    /// The measured forces compared with those of the field.
     pub force_checks: Vec<ForceCheck>,
     /// The statements on the edges that the data contradict.
     pub contradiction: Option<Contradiction>,
@@ -127,7 +128,7 @@ impl FieldEstimate {
         })
     }
 
-    /// The share of the area on which the mesh's own error is the larger part of the error of stress, and more than a
+    /// The share of the area on which the discretisation error is the larger part of the error of stress, and more than a
     /// hundredth of the root mean square of the stress.
     pub fn coarse_share(&self, mesh: &Mesh) -> f64 {
         const MATTERS: f64 = 0.01;
@@ -205,7 +206,7 @@ pub struct MarkerEstimate {
     pub standardised_residual: f64,
     /// Factor of its weight, from 0 to 1.
     pub trust: f64,
-    /// Whether normal noise and the mesh's own error would leave so large a residual at less than one marker in a thousand.
+    /// Whether normal noise and the discretisation error would leave so large a residual at less than one marker in a thousand.
     pub outlier: bool,
 }
 
@@ -236,7 +237,7 @@ pub struct Smoothing {
 /// The statements that the data contradict.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Contradiction {
-    /// The probability of so large a fall of the misfit if all statements on the edges are true.
+    /// The probability of so large a reduction of the misfit if all statements on the edges are true.
     pub probability: f64,
     /// The edges that contradict on their own, each with this probability; empty where they do so only together.
     pub edges: Vec<(String, f64)>,

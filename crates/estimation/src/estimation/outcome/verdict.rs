@@ -52,10 +52,9 @@ pub struct Verdict {
     pub reasons: Vec<Reason>,
     /// Alternatives that explain the data better, the best first, where the data are not explained.
     pub trials: Vec<Trial>,
-    /// What the equations as they are leave of the same markers and weights as [`Trial::residual_rms`], in mm; `None` where nothing was
-    /// tried.
+    /// [`Trial::residual_rms`] of the equations as they are, with the same markers and weights, in mm; `None` where nothing was tried.
     pub residual_rms: Option<f64>,
-    /// The place with the largest misfit, where the data are not explained.
+    /// The position with the largest misfit, where the data are not explained.
     pub worst: Option<Worst>,
 }
 
@@ -86,20 +85,20 @@ pub struct NoiseCorrelation {
 pub enum Reason {
     /// An alternative reduces the misfit more than noise would: the probability of that under noise.
     Alternative(f64),
-    /// The residuals correlate over so many mm, and so few markers with white noise would carry the same information.
+    /// The residuals correlate over a length, and too few markers with white noise would carry the same information.
     Few {
         /// The distance in mm.
         length: f64,
         /// The number of markers with white noise.
         independent: f64,
     },
-    /// The data contradict free edges as the markers show them, which may lie so many mm farther out.
+    /// The data contradict free edges as the markers show them, which may lie up to this distance in mm farther out.
     UnknownEdges(f64),
     /// Gross errors make up the noise, which has this standard deviation in mm.
     GrossErrors(f64),
-    /// A measured force is off by so many standard errors.
+    /// A measured force differs from that of the field by this number of standard errors.
     Force(f64),
-    /// The residuals are correlated so strongly with those of the frame before or after.
+    /// The residuals have this correlation with those of the frame before or after.
     Alike(f64),
     /// The file seems to hold something else than displacements along x and y.
     Mistaken,
@@ -245,7 +244,7 @@ fn condition_words(condition: EdgeCondition) -> &'static str {
     }
 }
 
-/// One digit of a positive number.
+/// A positive number with one digit.
 fn roughly(value: f64) -> String {
     let digits = (-value.max(1e-9).log10().floor()).max(0.0) as usize;
     format!("{value:.digits$}")
@@ -256,10 +255,10 @@ fn roughly(value: f64) -> String {
 pub struct Trial {
     /// The alternative.
     pub alternative: Alternative,
-    /// Root mean square of each component that would remain of the sound markers' residuals with their weights, in mm: without outliers
+    /// Root mean square of each component of the sound markers' residuals with the alternative, with their weights, in mm: without outliers
     /// it is smaller than that of all markers.
     pub residual_rms: f64,
-    /// The probability that noise alone makes the misfit fall so much.
+    /// The probability that noise alone causes so large a reduction of the misfit.
     pub probability: f64,
     /// The reduction of the misfit in units of the noise's variance, less twice the number of its parameters.
     pub gain: f64,
@@ -268,7 +267,7 @@ pub struct Trial {
 /// Where the field is farthest from the data.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Worst {
-    /// The place in mm.
+    /// The position in mm.
     pub position: [f64; 2],
     /// The mean of measured less corrected displacement of the markers around it in mm.
     pub misfit: [f64; 2],

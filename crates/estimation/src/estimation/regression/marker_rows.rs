@@ -1,4 +1,4 @@
-//! The derivatives of the markers over their noise, and their products with the noise that was found.
+//! The derivatives of the markers' displacements over their noise, and the covariance of their products with correlated noise.
 
 use nalgebra::{DMatrix, DVector};
 

@@ -12,7 +12,7 @@ use crate::mesh::{CellShape, Mesh};
 
 const SEEDS: u64 = 40;
 
-/// Estimates of markers with noise on a mesh whose own error is far below it.
+/// Estimates of markers with noise on a mesh whose discretisation error is far below it.
 fn estimates(truth: &Truth, knowledge: &Knowledge, noise: f64) -> (Mesh, Vec<FieldEstimate>) {
     let mesh = Mesh::plate(SIZE, [10, 6], CellShape::Quad9);
     let one = |seed| {
@@ -172,7 +172,7 @@ fn noise_that_correlates_between_neighbours_is_not_white() {
     assert_ne!(result.verdict.answer, Answer::Explained);
 }
 
-/// A sheet that hardly carries anything has edges that no test tells from free ones; one loaded edge alone would exclude every force.
+/// The edges of a sheet that hardly carries a force cannot be distinguished from free ones; one loaded edge alone would exclude every force.
 #[test]
 fn forces_too_small_to_be_seen_have_intervals_that_hold_them() {
     let mesh = Mesh::plate(SIZE, [10, 6], CellShape::Quad9);

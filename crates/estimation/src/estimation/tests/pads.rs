@@ -60,7 +60,7 @@ fn a_rigid_pad_inside_of_the_sheet_has_one_motion_and_one_force() {
             "{pad:?} {force:?}"
         );
         let [low, high] = pad.force[axis].interval;
-        // The truth is on the same mesh, whose own error the interval holds.
+        // The truth is on the same mesh; the interval includes the discretisation error.
         assert!(high - low < 0.1 * force[0].hypot(force[1]), "{pad:?}");
         assert!(low < force[axis] && force[axis] < high, "{pad:?} {force:?}");
     }

@@ -1,4 +1,4 @@
-//! Intervals place by place, where coverage on the average over a specimen says nothing.
+//! Intervals at each position: the mean coverage over a specimen does not show where they are too narrow.
 
 use super::*;
 use crate::mesh::{CellShape, Mesh, Shape};

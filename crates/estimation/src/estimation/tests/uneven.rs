@@ -6,14 +6,14 @@ use crate::mesh::{CellShape, Mesh};
 use crate::problem::{BoundaryProblem, Load};
 use crate::statistics::extremes;
 
-/// 31 × 16 places, the outermost on the edges.
+/// 31 × 16 positions, the outermost on the edges.
 fn grid() -> Vec<[f64; 2]> {
     let positions =
         (0..31).flat_map(|i| (0..16).map(move |j| [2.0 * f64::from(i), 2.0 * f64::from(j)]));
     positions.collect()
 }
 
-/// Markers of a field with noise of one size of each component at each place.
+/// Markers of a field with noise whose size depends on the position and the component.
 fn markers(
     field: &dyn Fn([f64; 2]) -> [f64; 2],
     size: &dyn Fn([f64; 2]) -> [f64; 2],
@@ -32,7 +32,7 @@ fn markers(
     all
 }
 
-/// As of image correlation whose subsets reach beyond the edge, a camera that looks aslant, ultrasound.
+/// The noise of image correlation whose subsets extend past the edge, of an inclined camera, of ultrasound.
 #[test]
 fn uneven_noise_is_neither_laid_to_grips_and_edges_nor_left_out_of_intervals() {
     let (truth, mesh) = (Truth::new(), estimate_mesh());
@@ -66,8 +66,8 @@ fn uneven_noise_is_neither_laid_to_grips_and_edges_nor_left_out_of_intervals() {
     );
 }
 
-/// A sheet that is clamped at three sides and pulled at the fourth by a traction, of which nothing is said: the displacement is singular at
-/// the corners between, and the force is that of the traction.
+/// A sheet clamped at three sides and pulled at the fourth by a traction; no condition is stated. The displacement is singular at the corners
+/// between, and the force is that of the traction.
 #[test]
 fn forces_of_unknown_edges_that_meet_in_singular_corners_are_in_their_intervals() {
     let traction = [0.05, 0.01];

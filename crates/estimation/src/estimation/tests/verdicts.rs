@@ -1,4 +1,4 @@
-//! What is said of the right law and of a wrong one under noise that is white, or of which few values are independent.
+//! The verdicts on the right law and on a wrong one under noise that is white, or of which few values are independent.
 
 use nalgebra::DMatrix;
 use rand::SeedableRng;
@@ -23,7 +23,7 @@ fn positions() -> Vec<[f64; 2]> {
         .collect()
 }
 
-/// The root of the covariance e^(−d/ℓ) of the places.
+/// The root of the covariance e^(−d/ℓ) of the positions.
 fn root(positions: &[[f64; 2]], length: f64) -> DMatrix<f64> {
     let far = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]);
     let count = positions.len();
@@ -166,7 +166,7 @@ fn a_roller_is_proposed_where_an_edge_is_stated_to_be_free_or_a_grip() {
     }
 }
 
-/// A force that the field cannot have is told, and does not pull the field towards it.
+/// A force that the field cannot have is reported, and does not change the field.
 #[test]
 fn a_wrong_force_leaves_the_field_as_the_markers_show_it() {
     let (truth, mesh) = (Truth::new(), estimate_mesh());

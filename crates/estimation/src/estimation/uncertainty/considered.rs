@@ -3,14 +3,14 @@
 //!
 //! ```text
 //! sₖ = ∂u/∂cₖ = −K⁻¹ ∂F/∂cₖ
-//! M Dₖ = −AᵀWHsₖ/v − Gᵀ∂f/∂cₖ/σ                  what the regression makes of it, as it does not know c
+//! M Dₖ = −AᵀWHsₖ/v − Gᵀ∂f/∂cₖ/σ                  the response of the regression, which does not estimate c
 //!
 //! Cov(p, c) = [C + DΣDᵀ, DΣ; ΣDᵀ, Σ],   ∂u/∂(p, c) = [S, s]
 //! ```
 //!
 //! with A, W, v, G, M of [`crate::estimation::regression`], Σ the covariance of c, and f the measured forces. The field remains
 //! the one with the parameters as they are given: they are considered, but not estimated (Schmidt), so that data with little information on
-//! them do not move the field. What the data r show of edges counts in Σ, whose values are those about nothing:
+//! them do not move the field. The information of the data r on the distances of edges changes Σ, whose entries are mean products about zero:
 //!
 //! ```text
 //! J = Σ₀⁻¹ + (Hs)ᵀV(Hs) − (Hs)ᵀVA M⁻¹ AᵀV(Hs),   d = J⁻¹ (Hs)ᵀVr,   Σ = J⁻¹ + ddᵀ      Σ₀ before the data, V = W/v
@@ -33,8 +33,9 @@ use crate::solve::vector::dot;
 pub struct Considered {
     /// ∂F/∂cₖ.
     slopes: Vec<Vec<f64>>,
-    /// How many parameters are the law's, and of each of the others the edge.
+    /// The number of the law's parameters.
     of_law: usize,
+    /// The edge of each distance.
     edges: Vec<usize>,
     /// sₖ.
     changes: Vec<Vec<f64>>,
@@ -87,7 +88,7 @@ impl NearestField<'_> {
         })
     }
 
-    /// The mean squares of edges' distances given the data, from those without them; these where they are nothing or singular.
+    /// The mean products of the distances given the data, from those before the data; unchanged where there is no distance or a matrix is singular.
     fn given_the_data(
         &self,
         before: DMatrix<f64>,
@@ -134,8 +135,8 @@ impl NearestField<'_> {
         Ok(equations.target_with_forces(&at_markers, &forces, &self.linear, &self.variances))
     }
 
-    /// The standard errors of the bodies' forces along x and y in N due to the law's parameters, nothing where none is considered, and due to
-    /// all of them; a common distance of an edge farther out, which only increases forces, is in neither.
+    /// The standard errors of the bodies' forces along x and y in N due to the law's parameters, empty where none is considered, and due to
+    /// all considered parameters. Neither includes a distance that all points of an edge have in common, which only increases forces.
     pub(in crate::estimation) fn force_deviations(
         &self,
         considered: &Considered,
@@ -166,7 +167,7 @@ impl NearestField<'_> {
         Ok([if of_law > 0 { by_law } else { Vec::new() }, by_all])
     }
 
-    /// Appends the parameters to those of the field.
+    /// Appends the considered parameters to those of the field.
     pub(in crate::estimation) fn consider(&mut self, considered: Considered) {
         let (responses, squares) = (&considered.responses, &considered.squares);
         let (before, more) = (responses.nrows(), responses.ncols());

@@ -16,8 +16,8 @@ pub struct Granted {
 }
 
 impl NearestField<'_> {
-    /// The changes that what is known admits: a picture of another scale, the mesh's own error at the markers, and free edges up to the gap away
-    /// from those of the mesh.
+    /// The admitted changes: a picture of another scale, the discretisation error at the markers, and free edges up to the gap away from those of
+    /// the mesh.
     ///
     /// # Errors
     /// Where the tangent cannot be used to solve systems.
@@ -50,7 +50,7 @@ impl NearestField<'_> {
         Ok(all)
     }
 
-    /// The part of the misfit Σ w ω r² of a regression that granted changes E of known deviation d may make beside its parameters:
+    /// The part of the misfit Σ w ω r² of a regression that granted changes E of known deviation d explain in addition to its parameters:
     ///
     /// ```text
     /// bᵀH⁻¹b,   b = EᵀWr,   H = EᵀWE − TᵀCT/v + v/d²,   T = AᵀWE                         C, A: covariance and design

@@ -1,14 +1,14 @@
-//! The small changes of the field due to free edges that lie elsewhere than those of the mesh.
+//! The small changes of the field where free edges of the specimen lie outside or inside of those of the mesh.
 //!
 //! ```text
 //! ∂u/∂d = −K⁻¹ f,   fᵢ = h ∫ P t (t·∇Nᵢ) ds                    d the distance of the edge outside of the mesh's, t its tangent
 //! ```
 //!
 //! The strip between both is so narrow that it only carries tension along the edge: h d P t is the force in it. One
-//! step about a field that was found with wrong edges determines distances of a fiftieth of the width to a third.
+//! linearised step about a field with wrong edges gives distances of a fiftieth of the width with an error below a third.
 //!
-//! A grip that lies farther out moves as it did there, so that the mesh's edge moves by −∂u/∂n more per mm. An outline made from markers
-//! is wrong on all sides by the same distance.
+//! A grip that lies farther out imposes its displacement there, so that the displacement of the mesh's edge differs by −∂u/∂n per mm. An outline
+//! that was made from markers is wrong by the same distance on all sides.
 
 use nalgebra::DMatrix;
 
@@ -25,7 +25,7 @@ use crate::solve::vector::{add_scaled, moved};
 pub type MovedEdge = (MovedPart, DMatrix<f64>);
 
 impl NearestField<'_> {
-    /// Each of the free edges moved alone, all of them together where there are several, and with them those that moved in a stated way.
+    /// Each free edge moved alone, all of them together where there are several, and the whole outline where edges have a stated motion.
     pub(in crate::estimation) fn moved_edges(
         &mut self,
         edges: &[Edge],
@@ -54,7 +54,7 @@ impl NearestField<'_> {
         Ok(moved)
     }
 
-    /// The displacements of the markers per mm that grips lie farther out, with these forces of strips beside free edges.
+    /// The displacements of the markers per mm by which grips lie farther out, and free edges too, which the forces of their strips represent.
     fn moved_outline(
         &mut self,
         grips: &[&Edge],
@@ -74,7 +74,7 @@ impl NearestField<'_> {
         Ok(DMatrix::from_vec(markers.len(), 1, markers))
     }
 
-    /// −∂u/∂n at the nodes of a grip, along the axes in which its motion is stated: the mean of the sides that meet at a node.
+    /// Sets −∂u/∂n at the nodes of a grip, along the axes in which its motion is stated: the mean of the sides that meet at a node.
     fn move_grip(&self, grip: &Edge, motion: &mut [f64]) {
         let nodes = &grip.segment.nodes;
         let sides: Vec<[f64; 2]> = nodes.windows(2).map(|side| self.slope(side)).collect();
@@ -151,7 +151,7 @@ impl NearestField<'_> {
     }
 }
 
-/// Whether an edge at the rim of the sheet moved in a stated way along an axis.
+/// Whether an edge of the boundary has a stated motion along an axis.
 fn moves_as_stated(edge: &Edge) -> bool {
     !edge.segment.inside && [0, 1].iter().any(|axis| is_stated(edge.condition, *axis))
 }
@@ -170,7 +170,7 @@ mod tests {
     use crate::estimation::{Alternative, Answer, EdgeCondition, MovedPart};
     use crate::markers::Marker;
 
-    /// How far the edges of a plate are found from those of a mesh that lie so much farther in.
+    /// The verdict, and the estimated distances of the plate's edges from those of a mesh that lie farther in.
     fn estimated(
         truth: &Truth,
         [bottom, top]: [f64; 2],
@@ -198,7 +198,7 @@ mod tests {
     #[test]
     fn the_verdict_tells_how_far_free_edges_lie_from_those_of_the_mesh() {
         let truth = Truth::new();
-        // One linearised step about a field with wrong edges tells it to a third.
+        // One linearised step about a field with wrong edges has an error below a third.
         let near = |distance: f64, off: f64| (distance / off - 1.0).abs() < 0.35;
         for off in [0.6, -0.6] {
             let (answer, moved) = estimated(&truth, [off; 2], 0.004);

@@ -107,7 +107,7 @@ mod tests {
     }
 
     #[test]
-    fn the_change_that_is_told_is_that_of_a_larger_picture() {
+    fn the_reported_change_is_that_of_a_larger_picture() {
         let truth = Truth::new();
         let [plain, larger] = [0.0, 1e-3].map(|error| seen(&truth, error, 0.0, 2));
         let index = right(&plain);
@@ -119,9 +119,9 @@ mod tests {
         );
     }
 
-    /// 0.3 %, as likely smaller as larger: most intervals miss the force where nothing is said of it.
+    /// A scale error of ± 0.3 %: most intervals miss the force unless its standard deviation is stated.
     #[test]
-    fn intervals_hold_a_scale_that_is_stated() {
+    fn intervals_hold_a_stated_error_of_the_scale() {
         let truth = Truth::new();
         let held = |deviation: f64| {
             let errors = [-3e-3, 3e-3].into_iter();
@@ -137,9 +137,9 @@ mod tests {
         assert!(without < 4 && with == 8, "{without} {with}");
     }
 
-    /// A stated scale explains what it makes of the markers and of a measured force.
+    /// The stated deviation of the scale explains its effects on the markers and on a measured force.
     #[test]
-    fn a_scale_that_is_stated_and_there_is_explained() {
+    fn a_stated_error_of_the_scale_is_explained() {
         let truth = Truth::new();
         let mut markers = truth.markers(0.01, 3);
         for marker in &mut markers {

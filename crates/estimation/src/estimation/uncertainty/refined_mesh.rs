@@ -1,15 +1,15 @@
-//! The mesh's own error in an estimated field, from the same equations on cells half as large.
+//! The discretisation error of an estimated field, from the same equations on cells half as large.
 //!
 //! ```text
 //! d = u_{h/2}(p) − u_h(p)                      at the motion p of the edges that was found
-//! M δp = −AᵀWHd/v − Gᵀd_F/σ                    what the regression makes of d, as if it were in the data
+//! M δp = −AᵀWHd/v − Gᵀd_F/σ                    the response of the regression to d, as if it were in the data
 //! e = d + S δp                                                                            [mm]
 //! G = ∇u_{h/2} + ∇(S δp)                       in the middle of a cell                       [–]
 //! ```
 //!
 //! with A, W, v, G, M of [`crate::estimation::regression`], S = ∂u/∂p, d_F the same difference of the
-//! measured forces. The difference of two meshes is at least half of the coarser one's error where the order is one,
-//! as beside a singular corner, and more of it elsewhere: ± 1.96 e covers the error.
+//! measured forces. The difference of two meshes is at least half of the coarser one's error where the order of convergence is one,
+//! as near a singular corner, and a larger part of it elsewhere: ± 1.96 e covers the error.
 
 use std::collections::BTreeSet;
 
@@ -68,8 +68,8 @@ impl Fine {
         }
     }
 
-    /// ∇u_{h/2} in the middle of a cell of the mesh that was refined: for a quadrilateral the mean of its four parts, which meet there.
-    fn gradient_amid(&self, coarse: usize) -> [f64; 4] {
+    /// ∇u_{h/2} in the middle of a coarse cell: for a quadrilateral the mean of its four parts, which meet there.
+    fn gradient_at_centre(&self, coarse: usize) -> [f64; 4] {
         let first = 4 * coarse;
         let shape = self.mesh.shape(first);
         let at = |cell: usize, local| self.mesh.gradient_at(&self.displacement, cell, local);
@@ -102,7 +102,7 @@ impl NearestField<'_> {
         })
     }
 
-    /// The mesh's own error, where the difference is known; it is computed once.
+    /// The discretisation error, where [`Self::mesh_difference`] exists; it is computed once.
     pub fn mesh_error(&self, edges: &[Edge]) -> Option<&MeshError> {
         let refined = self
             .known_mesh_error
@@ -110,7 +110,7 @@ impl NearestField<'_> {
         refined.as_ref()
     }
 
-    /// The mesh's own error, computed again even where it is known.
+    /// The discretisation error, computed anew.
     pub fn compute_mesh_error(&self, edges: &[Edge]) -> Option<MeshError> {
         let mesh = self.equations.task.specimen.mesh;
         let refined = self.mesh_difference(edges)?;
@@ -126,7 +126,7 @@ impl NearestField<'_> {
             .collect();
         let gradient = |cell: usize| {
             let after = mesh.gradient_at(&adapted, cell, mesh.shape(cell).centre());
-            let fine = fine.gradient_amid(cell);
+            let fine = fine.gradient_at_centre(cell);
             [0, 1, 2, 3].map(|component| fine[component] + after[component])
         };
         let followed = &self.linear.design * &change;
@@ -168,7 +168,7 @@ impl NearestField<'_> {
         let mut residual = vec![0.0; displacement.len()];
         let describe = |cell: usize| fine.describe_cell(cell);
         let solved = Newton::new(&pushed, &fixed).and_then(|mut newton| {
-            // The coarser field is near, so that one factor serves for all steps where the tangent there is positive definite.
+            // The coarser field is near: one factor serves all steps if the tangent there is positive definite.
             let begun = newton.tangent.at(&pushed, &displacement, &describe);
             let method = if begun.is_ok() {
                 Newton::solve_near
@@ -299,7 +299,7 @@ fn held_unknowns(mesh: &Mesh, fine: &Mesh, edge: &Edge, held: &[bool]) -> [Vec<u
     })
 }
 
-/// Whether a place lies on the straight line between two others, but for a tenth of its length.
+/// Whether a position is nearer to the straight line between two others than a tenth of its length.
 fn is_near(position: [f64; 2], [from, to]: [[f64; 2]; 2]) -> bool {
     const NEAR: f64 = 0.1;
     let side = [to[0] - from[0], to[1] - from[1]];
@@ -310,7 +310,7 @@ fn is_near(position: [f64; 2], [from, to]: [[f64; 2]; 2]) -> bool {
     dot(&off, &off) <= NEAR * NEAR * square
 }
 
-/// The unknowns of a refined mesh along an axis held by a pad on the sheet: those in cells and on sides of cells all of whose nodes are held.
+/// The unknowns of a refined mesh along an axis that a pad on the sheet holds: those in cells, and on sides of cells, whose nodes are all held.
 fn held_inside(mesh: &Mesh, fine: &Mesh, edge: &Edge, axis: usize, held: &[bool]) -> Vec<usize> {
     let nodes = edge.segment.nodes.iter().copied();
     let pad: BTreeSet<usize> = nodes.filter(|node| held[2 * node + axis]).collect();

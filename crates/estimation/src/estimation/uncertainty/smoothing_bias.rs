@@ -1,4 +1,4 @@
-//! The features that the smoothness chosen by the data may remove at single places.
+//! The local features that the smoothness chosen by the data may remove.
 //!
 //! ```text
 //! dⱼ = (M − (1 − ε) λⱼ BⱼᵀBⱼ)⁻¹ (1 − ε) λⱼ Bⱼᵀρⱼ,   Cov(p) ← Cov(p) + Σ dⱼ dⱼᵀ
@@ -6,7 +6,7 @@
 //!
 //! with M, λ, B, ρ of [`crate::estimation::regression`]: dⱼ is the change of the parameters if prior j lost the share
 //! ε of its weight. M⁻¹ includes the bias of smoothing only on the average over an edge: where an edge bends in one place and is
-//! straight elsewhere, its intervals are too narrow in that place and too wide elsewhere. Less smoothing reveals such places.
+//! straight elsewhere, its intervals are too narrow at the bend and too wide elsewhere. Less smoothing reveals such bends.
 //!
 //! # References
 //! G. Wahba, J. R. Stat. Soc. B 45, 133 (1983), doi:10.1111/j.2517-6161.1983.tb01239.x (intervals across the function);
@@ -32,11 +32,11 @@ impl NearestField<'_> {
         })
     }
 
-    /// The change of the parameters where a prior loses so much of its weight.
-    fn eased(&self, form: &Form, lost: f64) -> Option<DVector<f64>> {
+    /// The change of the parameters if a prior loses a part of its weight.
+    fn eased(&self, form: &Form, lost_weight: f64) -> Option<DVector<f64>> {
         let covariance = &self.fit.covariance;
-        let pull = covariance * &form.slope * lost;
-        let square = covariance * &form.square * lost;
+        let pull = covariance * &form.slope * lost_weight;
+        let square = covariance * &form.square * lost_weight;
         let size = self.parameters.len();
         (DMatrix::identity(size, size) - square).lu().solve(&pull)
     }

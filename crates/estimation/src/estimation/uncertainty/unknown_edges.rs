@@ -3,8 +3,8 @@
 //! ```text
 //! sₖ = ∂u/∂dₖ                                    dₖ the distance of an edge outside of the mesh's at one of its points, linear
 //!                                                between them ([`super::moved_edges`])
-//! Σₖₗ = E(dₖdₗ) = g²/4,  Σₖₖ = g²/3               each point lies as probably anywhere from nothing to the gap g farther out
-//! Σₖₗ = a²/6,            Σₖₖ = a²/3               edges that are known to ± a: half of the variance is common to all points
+//! Σₖₗ = E(dₖdₗ) = g²/4,  Σₖₖ = g²/3               each point lies 0 to the gap g farther out, with uniform probability
+//! Σₖₗ = a²/6,            Σₖₖ = a²/3               edges are known to ± a: half of the variance is common to all points
 //! ```
 //!
 //! Points are eight gaps apart or more: an edge that is inclined by as little as an eighth against that of the mesh changes the field
@@ -15,14 +15,15 @@ use nalgebra::DMatrix;
 use crate::estimation::input::Edge;
 use crate::estimation::search::NearestField;
 
-/// Points of an edge are so many gaps apart at least, and no more than so many parts of it lie between them; more of an edge that was traced, which
-/// wavers.
+/// The least distance of the points of an edge, in gaps.
 const APART: f64 = 8.0;
+/// The largest number of parts of an edge between its points.
 const MOST_PARTS: f64 = 3.0;
+/// The same of a traced edge, which wavers.
 const MOST_TRACED_PARTS: f64 = 12.0;
 
 impl NearestField<'_> {
-    /// The forces of the strips beside the free edges in N/mm, each with the number of its edge, and Σ in mm²; nothing where the edges are known.
+    /// The forces of the strips along the free edges in N/mm, each with the index of its edge, and Σ in mm²; empty where the edges are known.
     pub(in crate::estimation) fn edge_strips(
         &self,
         edges: &[Edge],
@@ -47,7 +48,7 @@ impl NearestField<'_> {
         (strips, squares)
     }
 
-    /// The forces in N/mm of the strips to each side of points along an edge, as wide as linear interpolation between them is.
+    /// The forces in N/mm of the strip of each point of an edge: its width falls linearly from 1 at the point to 0 at its neighbours.
     fn strips_between_points(&self, edge: &Edge, gap: f64, most: f64) -> Vec<Vec<f64>> {
         let length = edge.segment.length();
         let parts = (length / (APART * gap)).floor().clamp(1.0, most);
@@ -75,7 +76,7 @@ mod tests {
         rectangle([0.0, bottom], [SIZE[0], SIZE[1] - top])
     }
 
-    /// The estimate by markers amid the plate.
+    /// The estimate from markers at least the gap away from the free edges.
     fn estimated(truth: &Truth, mesh: &Mesh, gap: Option<f64>, seed: u64) -> FieldEstimate {
         let markers = truth.markers(0.3, seed).into_iter();
         let amid = |marker: &Marker| (GAP..SIZE[1] - GAP).contains(&marker.position[1]);
@@ -87,7 +88,7 @@ mod tests {
         estimate_on(mesh, &markers, &knowledge)
     }
 
-    /// The share of the stresses P₁₁ beside the free edges that ± 1.96 standard errors hold.
+    /// The share of the stresses P₁₁ near the free edges that lie within ± 1.96 standard errors.
     fn held(truth: &Truth, mesh: &Mesh, result: &FieldEstimate) -> f64 {
         const BESIDE: f64 = 8.0;
         let (mut inside, mut all) = (0, 0);
@@ -118,7 +119,7 @@ mod tests {
             };
             let (known, unknown) = (share(None), share(Some(GAP)));
             assert!(unknown > 0.93, "{off:?}: {unknown}");
-            // Else there is nothing to hold.
+            // Otherwise the test would show nothing.
             assert!(off != [2.0, 2.0] || known < 0.8, "{off:?}: {known}");
         }
     }

@@ -14,7 +14,7 @@ use crate::solve::Assembly;
 const SIDES: [&str; 4] = ["left", "right", "bottom", "top"];
 const THICKNESS: f64 = 2.0;
 
-/// The nodes of a plate moved to another quadrilateral with straight sides, in any place and direction.
+/// The nodes of a plate moved to another quadrilateral with straight sides, at any position and angle.
 fn placed(plate: &Mesh, [shear, turn, far]: [f64; 3]) -> Mesh {
     let position = |[x, y]: [f64; 2]| {
         let (x, y) = (x + shear * y + 0.01 * shear * x * y, y);
@@ -47,7 +47,7 @@ fn meshes() -> Vec<Mesh> {
         .collect()
 }
 
-/// t ∫ P n ds over a side between two places.
+/// t ∫ P n ds over a side between two positions.
 fn exact(stress: [f64; 4], [from, to]: [[f64; 2]; 2]) -> [f64; 2] {
     let along = [to[0] - from[0], to[1] - from[1]];
     // The specimen lies to the left.
@@ -95,10 +95,10 @@ fn forces_of_edges_that_meet_are_those_of_a_uniform_stress() {
     }
 }
 
-/// What is at a corner between a rigid edge and an unknown one, beyond the unknown one's own tractions, belongs to the rigid one; where
-/// an edge holds one axis alone the other one has the whole reaction along the other axis.
+/// The reaction at a corner of a rigid edge and an unknown one, less the tractions of the unknown one, belongs to the rigid one; where an edge
+/// holds one axis only, the other edge has all of the reaction along the other axis.
 #[test]
-fn reactions_are_shared_whole() {
+fn the_shares_of_a_reaction_sum_to_one() {
     let mesh = Mesh::plate([6.0, 4.0], [3, 2], CellShape::Quad4);
     let parts = segments(&mesh, &SIDES).unwrap();
     let condition = |name: &str| match name {
