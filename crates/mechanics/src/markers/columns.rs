@@ -69,8 +69,10 @@ fn after<'a>(column: &'a Column, name: &str) -> Option<&'a str> {
 /// The unit of a column: in brackets, or at the end of its name.
 pub fn unit_of(table: &Table, index: usize) -> Option<String> {
     let Column { name, unit, .. } = &table.columns[index];
-    let at_end = || name.rsplit_once('_').map(|(_, end)| end);
-    let at_end = || at_end().filter(|end| is_length(end)).map(str::to_owned);
+    let at_end = || {
+        let (_, end) = name.rsplit_once('_')?;
+        is_length(end).then(|| end.to_owned())
+    };
     unit.clone().or_else(at_end)
 }
 
@@ -83,7 +85,7 @@ fn millimetres(unit: &str) -> Option<f64> {
     units::factor(unit, Dimension::Length).ok()
 }
 
-/// The unit that all these heads name, if it is one and the same.
+/// The unit that all these heads name, if it is the same.
 pub fn common_unit<'a>(heads: impl IntoIterator<Item = Option<&'a str>>) -> Option<String> {
     let mut heads = heads.into_iter();
     let first = heads.next()??;
@@ -93,10 +95,10 @@ pub fn common_unit<'a>(heads: impl IntoIterator<Item = Option<&'a str>>) -> Opti
         .filter(|unit| !is_pixel(unit))
 }
 
-/// The names of the places' columns of a table of no other program.
+/// The names of the columns of positions in a table without a known layout.
 pub const POSITIONS: [Names; 2] = [&["x"], &["y"]];
 
-/// Those of its displacements' columns.
+/// The names of its columns of displacements.
 pub const DISPLACEMENTS: [Names; 2] = [&["ux", "u", "u_x"], &["uy", "v", "u_y"]];
 
 /// What to do where a column is not found, and may be assigned.
@@ -173,7 +175,7 @@ pub fn correction(table: &Table, head: Option<&str>, given: Option<f64>) -> Opti
 
 /// Results of other programs, and of this one, that contain nothing about the displacement: strains (`exx`, `e1`, all
 /// names with `strain`), DICe's figures of its correlation, stretches, rotations and coordinates of other systems,
-/// and what a correction writes beside its markers and nodes.
+/// and what a correction writes in its tables of markers and nodes.
 pub fn is_harmless(name: &str) -> bool {
     const NAMES: &str = "exx eyy exy e_xx e_yy e_xy e1 e2 gamma beta sigma contrast match noise_level active_pixels \
         iterations status_flag neighbor_id condition_number uncertainty uncertainty_angle corr correlation zncc \

@@ -9,7 +9,7 @@ use nalgebra::{Matrix2, Vector2};
 pub struct MarkerSeries {
     /// The frames, ascending by number.
     pub frames: Vec<Frame>,
-    /// Places at rest in mm of markers that were found in no frame.
+    /// Positions at rest in mm of markers that were found in no frame.
     pub lost: Vec<[f64; 2]>,
     /// The numbers of frames in which no marker moves, as in the picture at rest; these frames are left out.
     pub at_rest: Vec<usize>,
@@ -31,7 +31,7 @@ pub struct Frame {
 pub struct Marker {
     /// Its number: the same point has the same one in all frames.
     pub number: usize,
-    /// Its place at rest in mm.
+    /// Its position at rest in mm.
     pub position: [f64; 2],
     /// ux, uy in mm.
     pub displacement: [f64; 2],
@@ -67,14 +67,14 @@ impl Frame {
 }
 
 impl MarkerSeries {
-    /// The places of all markers of all frames, each once, in the order of their first frame; those that were found in none
+    /// The positions at rest of all markers of all frames, each once, in the order of their first frame; those that were found in none
     /// come last.
     pub fn positions(&self) -> Vec<[f64; 2]> {
         let tracked = self.tracked_positions().into_iter();
         tracked.chain(self.lost.iter().copied()).collect()
     }
 
-    /// The same places without those of markers that were found in no frame.
+    /// The same without the markers that were found in no frame.
     pub fn tracked_positions(&self) -> Vec<[f64; 2]> {
         let mut seen = HashSet::new();
         let markers = self.frames.iter().flat_map(|frame| &frame.markers);

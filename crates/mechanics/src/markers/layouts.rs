@@ -1,6 +1,6 @@
 //! The layouts of tables that other programs export, known by the names of their columns.
 //!
-//! | layout | known by | place | y axis |
+//! | layout | known by | position | y axis |
 //! |---|---|---|---|
 //! | columns | nothing else | x, y at rest | as it is |
 //! | DICe | `COORDINATE_X`, `DISPLACEMENT_X` | in pixels | downwards |
@@ -18,7 +18,7 @@
 //! # References
 //! DICe: `DICe_solution_*.txt` among the regression tests of github.com/dicengine/dice, and its maintainers on
 //! SIGMA (issues 123 and 133: in pixels, one number for both directions, −1 where the correlation failed).
-//! muDIC: `exportCSV` in `muDIC/IO/readWriteUtils.py` of github.com/PolymerGuy/muDIC; its `x`, `y` are the places
+//! muDIC: `exportCSV` in `muDIC/IO/readWriteUtils.py` of github.com/PolymerGuy/muDIC; its `x`, `y` are the positions
 //! *in the frame*, so that the displacement is subtracted from them.
 //! pyALDIC: `export_csv` in `src/al_dic/export/export_csv.py` of github.com/zachtong/pyALDIC, which writes coordinates and
 //! displacements of the image; `compute_strain.py` turns both signs for axes that point up.
@@ -26,11 +26,11 @@
 //! github.com/vincentjzy/OpenCorr; `ICGN2D1::compute` gives a ZNCC below zero to points outside of the image or without convergence.
 //! VIC-3D: `DICreader2D` in `peripydic/IO/dic.py` of github.com/lm2-poly/PeriPyDIC (`sigma` = −1: not found) and
 //! `pydictoolkit/dic/measurements.py` of github.com/ilyasst/pydictoolkit (`X`, `Y` in mm beside `x`, `y` in pixels); heads with
-//! units such as `"X [mm]"`, `"sigma [pixel]"` stand below a line of titles. VIC-2D: `read_vic2d_export` and `Vic2DDataset`,
+//! units such as `"X [mm]"`, `"sigma [pixel]"` are below a line of titles. VIC-2D: `read_vic2d_export` and `Vic2DDataset`,
 //! which find `x`, `y`, `u`, `v`, `exx`, `eyy`, `exy` at the pixels of the image.
 //! MatchID: `field_lookup` of `matchid_to_spatialdata`, which has the heads of versions 2023 and 2024.1 and turns y and V up.
 //! GOM: nodemaps of github.com/dlr-wf/aramis-data-exporter; GOM Correlate's tables as
-//! github.com/jaredvanblitterswyk/lce_tension_tests reads them (below five lines of preamble, places in the frame).
+//! github.com/jaredvanblitterswyk/lce_tension_tests reads them (below five lines of preamble, positions in the frame).
 
 use super::columns::{DISPLACEMENTS, HEIGHT, LIFT, Names, POSITIONS};
 use crate::document::{Table, is_pixel};
@@ -52,7 +52,7 @@ pub(super) struct Layout {
     pub harmless: Names,
     /// Whether the y axis points downwards, as in an image.
     pub downwards: bool,
-    /// Whether places are those in the frame, instead of at rest.
+    /// Whether positions are those in the frame, instead of at rest.
     pub deformed: bool,
     /// Whether lengths are in pixels where the head states no unit.
     pub pixels: bool,

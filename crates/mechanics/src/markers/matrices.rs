@@ -16,7 +16,7 @@ use super::understood::Understood;
 use crate::document::Table;
 use crate::error::Error;
 
-/// Files in the groups that make a frame: two whose names differ by `u` and `v` at their ends, else each alone.
+/// The files of each frame: two whose names end in `u` and `v` and are otherwise the same, or one alone.
 pub fn pairs(files: &[PathBuf]) -> Vec<Vec<&Path>> {
     let stem = |file: &Path| {
         let name = file.file_stem()?.to_string_lossy().into_owned();

@@ -1,14 +1,14 @@
 //! Points without a displacement that lie outside of the specimen: exports as whole matrices have an entry for every
 //! point of the picture, without a value where there is no specimen.
 
-/// Gaps at the rim of a matrix up to this share of it are taken for places where markers were lost.
+/// Gaps at the rim of a matrix up to this share of it count as lost markers.
 const LOST: f64 = 0.1;
 
 /// Share of the points of a matrix that must be present.
 const FULL: f64 = 0.99;
 
-/// The lost points within the specimen, as far as the points show it: in a whole matrix without rows or columns at the rim that
-/// have no marker at all, and without gaps at the rim of more than a tenth of the rest. Points that are not a matrix all count.
+/// The lost points within the specimen, as far as the points show it. Of a complete matrix, rows and columns at the rim that have no marker at all
+/// are outside, and gaps at the rim if they are more than a tenth of the rest. Points that are not a matrix all count.
 pub fn within(tracked: &[[f64; 2]], lost: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
     match Matrix::of(tracked, &lost) {
         Some(matrix) => {
@@ -91,8 +91,8 @@ impl Matrix {
         (0..rows).map(outside).collect()
     }
 
-    /// The points without a marker around which there is none either, within some rows and columns, as far as they hang together with the
-    /// rim, and those beside them: single ones are lost.
+    /// The gaps at the rim, within some rows and columns: points without a marker whose neighbours have none either, if they are connected to the
+    /// rim by such points, and the neighbours. Smaller gaps are lost markers.
     fn connected_to_rim(
         &self,
         columns: &std::ops::Range<usize>,

@@ -6,16 +6,16 @@ use crate::mesh::Mesh;
 use crate::mesh::geometry::{bounding_box, check_size};
 use crate::units::{decimals, extents, implausible_sheet};
 
-/// Displacements of more than so many sizes of the specimen are taken to be in another unit.
+/// Displacements of more than this multiple of the specimen's size are taken to be in another unit.
 const LARGEST: f64 = 20.0;
 
 /// A largest displacement below this share of the specimen's size is reported.
 const SMALLEST: f64 = 1e-5;
 
-/// Markers up to so many sizes of a cell outside of the mesh belong to its boundary.
+/// Markers outside of the mesh up to this multiple of a cell's size belong to its boundary.
 const NEAR_CELLS: f64 = 0.25;
 
-/// Markers farther outside of the box around the mesh than this share of its size are not looked for.
+/// Markers farther outside of the box around the mesh than this share of its size are not located in the mesh.
 const MARGIN: f64 = 0.5;
 
 /// Ratios of the units of length that are in use.
@@ -28,7 +28,7 @@ pub fn check_thickness(mesh: &Mesh, thickness: f64) -> Option<Diagnostic> {
     Some(Diagnostic::warning("", message).hint(hint))
 }
 
-/// Checks that the data have displacements that are consistent with the places.
+/// Checks that the data have displacements that are consistent with the positions.
 pub fn check(series: &MarkerSeries, warnings: &mut Vec<Diagnostic>) -> Result<(), Error> {
     if series.frames.is_empty() {
         return Err(Error::input(
@@ -146,14 +146,14 @@ pub fn place_on(mesh: &Mesh, series: &MarkerSeries) -> Result<MarkersOnMesh, Err
     })
 }
 
-/// The ratio of two units of length that a ratio of two lengths, or its inverse, is near.
+/// The ratio of two units of length to which a ratio of two lengths, or its inverse, is near.
 pub fn unit_ratio(ratio: f64) -> Option<f64> {
     let ratio = ratio.max(1.0 / ratio);
     let near = |unit: &f64| (0.8..1.3).contains(&(ratio / unit));
     RATIOS.iter().copied().find(near)
 }
 
-/// Length and width of the box around places.
+/// Length and width of the box around positions.
 fn extent(positions: impl Iterator<Item = [f64; 2]>) -> [f64; 2] {
     let [low, high] = bounding_box(positions);
     [high[0] - low[0], high[1] - low[1]]

@@ -1,6 +1,6 @@
 //! Fields as two tables of positions: those at rest, and those in a frame.
 //!
-//! Points are matched by their numbers (`id`, `marker`, `node`) where both tables have them, else by their order.
+//! Points are matched by their numbers (`id`, `marker`, `node`) where both tables have them, otherwise by their order.
 
 use std::collections::HashMap;
 use std::path::Path;
@@ -57,7 +57,7 @@ pub(super) fn read(frame: &Path, settings: &ReadSettings) -> Result<FileRows, Er
     })
 }
 
-/// The points at rest as they are in the frame: those that it lacks were not found.
+/// The positions in the frame of the points at rest, in their order; NaN where the frame lacks a point.
 fn by_number(rest: &[Point], moved: &[Point], table: &Table) -> Result<Vec<Point>, Error> {
     let positions: HashMap<Option<u64>, [f64; 2]> = moved.iter().copied().collect();
     let known: HashMap<Option<u64>, [f64; 2]> = rest.iter().copied().collect();

@@ -25,7 +25,7 @@ pub struct MarkerFiles {
 }
 
 /// Reads one or several files. Several tables or fields are frames: the number at the end of a file's name is its
-/// frame's, else its place in the list. Two matrices whose names end in `u` and `v` are one frame.
+/// frame's, otherwise its index in the list. Two matrices whose names end in `u` and `v` are one frame.
 ///
 /// # Errors
 /// [`Error::Input`] with the file, what is wrong and what to do.
@@ -81,7 +81,7 @@ fn append(combined: &mut FileRows, added: FileRows, file: &Path) -> Result<(), E
     Err(Error::input(format!("{} {fault}", file.display()), hint))
 }
 
-/// The numbers at the ends of the files' names where all have one of their own, else 1, 2, 3 …
+/// The numbers at the ends of the files' names where all have different ones, otherwise 1, 2, 3 …
 fn frame_numbers(groups: &[Vec<&Path>]) -> Vec<usize> {
     let number = |group: &Vec<&Path>| {
         let stem = group[0].file_stem()?.to_string_lossy().into_owned();

@@ -5,9 +5,9 @@ use crate::document::{self, ColumnRole};
 /// The role of a column.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
-    /// The place along x.
+    /// The position along x.
     X,
-    /// The place along y.
+    /// The position along y.
     Y,
     /// The displacement along x.
     Ux,
@@ -41,6 +41,6 @@ impl ColumnRole for Role {
 }
 
 impl Role {
-    /// The roles of places and displacements.
+    /// The roles of positions and displacements.
     pub(super) const LENGTHS: [Self; 4] = [Self::X, Self::Y, Self::Ux, Self::Uy];
 }

@@ -1,4 +1,4 @@
-//! The markers of files as they stand there, and how they are gathered into frames.
+//! The rows of files, and how they are gathered into frames of markers.
 
 use std::collections::{BTreeMap, HashMap};
 use std::path::PathBuf;
@@ -14,21 +14,21 @@ use crate::mesh::Mesh;
 /// How files are to be understood.
 #[derive(Clone, Debug, Default)]
 pub struct ReadSettings {
-    /// The length of the files' unit, or of a pixel, in mm, where the files do not say it.
+    /// The length of the files' unit, or of a pixel, in mm, where the files do not state it.
     pub unit: Option<f64>,
     /// The array of a file of VTK or Gmsh, where it must be named.
     pub array: Option<String>,
     /// The distance of the points of a matrix in mm.
     pub grid: Option<f64>,
-    /// Columns of a table that are passed over.
+    /// Columns of a table that are ignored.
     pub ignored_columns: Vec<String>,
     /// Columns of a table that the user names.
     pub columns: ChosenColumns,
-    /// The encoding of tables, where it is not the one that their bytes show.
+    /// The encoding of tables; `None` to recognise it from their bytes.
     pub encoding: Option<TextEncoding>,
-    /// Whether the y axis of tables points down, where it is not as their layout says.
+    /// Whether the y axis of tables points down; `None` for the convention of their layout.
     pub downwards: Option<bool>,
-    /// Whether places in tables are those of the frame, where it is not as their layout says.
+    /// Whether positions in tables are those in the frame instead of at rest; `None` for the convention of their layout.
     pub deformed: Option<bool>,
     /// The table of the positions at rest, where those of the frames are tables of positions too.
     pub rest: Option<PathBuf>,
@@ -37,7 +37,7 @@ pub struct ReadSettings {
 /// A marker of a file, before markers have numbers.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Row {
-    /// The frame, where the file says it.
+    /// The frame, where the file states it.
     pub frame: Option<usize>,
     pub time: Option<f64>,
     /// The point's own number, where the file has one.
@@ -59,9 +59,9 @@ pub(super) struct FileRows {
 }
 
 impl FileRows {
-    /// Gathers rows into frames; a point has the number that the files give it, else one by its place. Rows of a table that
-    /// stand twice, with the same place and displacement in the same frame, count once: they are one measurement, and its
-    /// weight must not grow by writing it down again. Rows that differ at one place are measurements of their own.
+    /// Gathers rows into frames; a point has the number that the files give it, otherwise one by its position. Rows of a table with the same
+    /// position and displacement in the same frame are one measurement, and count once: a copy carries no information. Rows with other
+    /// displacements at the same position are further measurements.
     pub fn gather(self, warnings: &mut Vec<Diagnostic>) -> MarkerSeries {
         let mut gathering = Gathering {
             named: self.rows.iter().all(|row| row.name.is_some()),
@@ -82,7 +82,7 @@ struct Gathering {
     mesh: bool,
     by_position: HashMap<[u64; 2], usize>,
     frames: BTreeMap<usize, Frame>,
-    /// The displacements at each place of each frame.
+    /// The displacements at each position of each frame.
     seen: HashMap<(usize, [u64; 2]), Vec<[f64; 2]>>,
     lost: BTreeMap<usize, [f64; 2]>,
     holes: usize,
@@ -177,8 +177,8 @@ impl Gathering {
 /// Displacements below this share of the largest one of all frames are rounding.
 const AT_REST: f64 = 1e-12;
 
-/// The frames that have markers which move, and the numbers of those in which none does, with a word about these, and about those that have none
-/// or are missing.
+/// The frames that have markers which move, and the numbers of those in which none does, with warnings of these frames, and of frames that have
+/// no marker or are missing.
 fn with_markers(
     frames: BTreeMap<usize, Frame>,
     warnings: &mut Vec<Diagnostic>,
@@ -214,8 +214,8 @@ fn with_markers(
     (kept, at_rest)
 }
 
-/// The numbers that are missing between the first and the last of some frames; none where frames stand at regular numbers,
-/// such as every tenth of a camera.
+/// The numbers that are missing between the first and the last of some frames; `None` where the numbers are regular, such as every tenth of a
+/// camera.
 fn missing_frames(numbers: &[usize]) -> Option<String> {
     let pairs = numbers.windows(2);
     let pairs: Vec<[usize; 2]> = pairs.map(|pair| [pair[0], pair[1]]).collect();

@@ -1,4 +1,4 @@
-//! The subset and the step of image correlation, where a file or the one beside it says them.
+//! The subset and the step of image correlation, where a table or a file in its folder states them.
 //!
 //! | program | where | subset, step |
 //! |---|---|---|
@@ -24,12 +24,12 @@ pub struct Subset {
     pub size: f64,
     /// Distance of neighbouring subsets in pixels.
     pub step: f64,
-    /// Where this is said.
+    /// Where both are stated, for messages.
     pub source: String,
 }
 
 impl Subset {
-    /// What the head of a table, or a file beside it, says.
+    /// Subset and step according to the head of a table, or to a file in its folder.
     pub(super) fn of(table: &Table, path: &Path, layout: &str) -> Option<Self> {
         let of_head = |size: &str, step: &str| {
             let head = &table.source.text;
@@ -132,7 +132,7 @@ mod tests {
 
     use super::*;
 
-    /// What is found of a table that lies at a path among other files.
+    /// Size and step of the first of some files, which is the table.
     fn subset_in(files: &[(&str, &str)], layout: &str) -> Option<[f64; 2]> {
         let folder = tempfile::tempdir().unwrap();
         for (name, text) in files {
@@ -168,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_said_or_may_be_anothers_is_not_guessed() {
+    fn what_is_not_stated_or_may_belong_to_another_table_is_not_guessed() {
         let irregular = "***\n*** Subset size: 27\n*** Step size: x -1 y -1 (-1 implies not regular grid)\na,b\n1,2\n";
         assert_eq!(subset_in(&[("a.txt", irregular)], "DICe"), None);
         let table = ("a.csv", "# subset size: 27\n# step size: 35\na,b\n1,2\n");

@@ -38,8 +38,8 @@ pub fn read(path: &Path, reading: &ReadSettings) -> Result<FileRows, Error> {
     })
 }
 
-/// Reads closed lines: places in the columns `x`, `y`; several lines have their numbers in a column `line`. `unit` is
-/// the length of the file's unit in mm, where it does not say it.
+/// Reads closed lines: positions in the columns `x`, `y`; several lines have their numbers in a column `line`. `unit` is
+/// the length of the file's unit in mm, where the file does not state it.
 ///
 /// # Errors
 /// [`Error::Input`] with file, line and reason.
@@ -88,9 +88,9 @@ struct Reader<'a> {
     mismatch: Option<usize>,
     lost: Option<usize>,
     converged: Option<usize>,
-    /// Whether places are in pixels.
+    /// Whether positions are in pixels.
     in_pixels: bool,
-    /// What says the units of lengths that the heads do not say.
+    /// The length in mm of the unit where heads state none, as given by the user.
     given: Option<f64>,
     warnings: Vec<Diagnostic>,
 }
@@ -159,8 +159,7 @@ impl<'a> Reader<'a> {
         reader.check_columns(layout, named, &reading.ignored_columns)
     }
 
-    /// Refuses columns that nobody reads, and points that leave their plane; where the user names the columns, others are only
-    /// told.
+    /// Refuses columns that are not read, and points that leave their plane; where the user names the columns, a warning lists the others.
     fn check_columns(
         mut self,
         layout: &Layout,
@@ -234,7 +233,7 @@ impl<'a> Reader<'a> {
             return Err(refuse("a marker has no position", hint));
         }
         if self.deformed && displacement.iter().any(|u| !u.is_finite()) {
-            // Where it was at rest nobody knows.
+            // Its position at rest is unknown.
             position = [f64::NAN; 2];
         }
         let integer = |column: Option<usize>| {

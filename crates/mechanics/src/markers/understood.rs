@@ -15,11 +15,11 @@ pub struct Understood {
     pub columns: Vec<ColumnTaken>,
     /// Whether the file's y axis points down, as in an image, and was turned up.
     pub turned_up: bool,
-    /// Whether the file's places are those of the frame, from which the displacement was subtracted.
+    /// Whether the file's positions are those in the frame, from which the displacement was subtracted.
     pub taken_to_rest: bool,
-    /// Subset and step of image correlation, where they are said.
+    /// Subset and step of image correlation, where they are stated.
     pub subset: Option<Subset>,
-    /// The length of a pixel in mm, where places are in pixels.
+    /// The length of a pixel in mm, where positions are in pixels.
     pub pixel: Option<f64>,
 }
 
@@ -45,7 +45,7 @@ impl Understood {
         }
     }
 
-    /// Origin and axes in words.
+    /// A description of origin and axes.
     pub fn axes(&self) -> &'static str {
         if self.turned_up {
             "In the file y points down, as in an image; here y and uy are turned up: the origin is that of the file, such as the \
@@ -55,14 +55,14 @@ impl Understood {
         }
     }
 
-    /// Where places come from, if they are not the file's.
+    /// How positions at rest were computed, if they are not the file's.
     pub fn positions(&self) -> Option<&'static str> {
         self.taken_to_rest.then_some(
             "The positions in the file are those in the frame; the displacement was subtracted to obtain positions at rest.",
         )
     }
 
-    /// The axes of the file beside those used here, where they differ.
+    /// A sketch of the axes of the file and of those used here, where they differ.
     pub fn sketch(&self) -> Option<&'static str> {
         self.turned_up.then_some(
             "in the file          here\n\

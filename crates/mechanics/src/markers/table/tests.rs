@@ -107,7 +107,7 @@ fn dice_is_read_in_pixels_and_its_y_axis_turned_up() {
 }
 
 #[test]
-fn early_versions_of_dice_say_match_and_stereo_has_its_own_columns() {
+fn early_versions_of_dice_have_match_and_stereo_has_its_own_columns() {
     let early = "COORDINATE_X,COORDINATE_Y,DISPLACEMENT_X,DISPLACEMENT_Y,GAMMA,MATCH\n1,2,3,4,0,0\n2,2,3,4,0,-1\n";
     let measured = read_texts(&[("a.txt", early)], &unit(1.0)).unwrap();
     near(
@@ -151,7 +151,7 @@ fn points_that_vic_and_dice_did_not_find_are_lost() {
 }
 
 #[test]
-fn a_unit_that_nobody_knows_is_said_by_the_user() {
+fn an_unknown_unit_is_stated_by_the_user() {
     let text = "x（毫米）,y（毫米）,ux（毫米）,uy（毫米）\n1,2,3,4\n5,2,3,4\n";
     let error = read_texts(&[("a.csv", text)], &ReadSettings::default()).unwrap_err();
     assert!(
@@ -252,7 +252,7 @@ fn files_are_frames_by_the_numbers_of_their_names() {
 }
 
 #[test]
-fn what_cannot_be_meant_is_refused_with_place_and_remedy() {
+fn unusable_tables_are_refused_with_line_and_remedy() {
     for (text, reason) in [
         (
             "x [mm],y [mm],ux [mm]\n1,2,3\n",
@@ -319,7 +319,7 @@ fn what_cannot_be_meant_is_refused_with_place_and_remedy() {
 }
 
 #[test]
-fn columns_are_passed_over_by_wish_and_harmless_ones_without() {
+fn columns_are_ignored_on_request_and_harmless_ones_always() {
     let text = "x [mm],y [mm],ux [mm],uy [mm],uz [mm],exx,Strain YY,temperature [C]\n1,2,3,4,9,0,0,20\n5,2,3,4,9,0,0,20\n";
     let reading = ReadSettings {
         ignored_columns: vec!["temperature".into(), "uz".into()],
@@ -345,7 +345,7 @@ fn a_given_unit_corrects_a_head_that_names_one_unit_throughout() {
         warning.contains("states mm, --unit states 1000 mm"),
         "{warning}"
     );
-    // Of different units each stands.
+    // Different units are not corrected.
     let text = "x [mm],y [mm],ux [um],uy [um]\n10,20,1000,0\n30,20,1000,0\n";
     let measured = read_texts(&[("a.csv", text)], &unit(1000.0)).unwrap();
     assert_eq!(
@@ -355,7 +355,7 @@ fn a_given_unit_corrects_a_head_that_names_one_unit_throughout() {
 }
 
 #[test]
-fn rows_that_stand_twice_count_once_and_lost_markers_keep_their_places() {
+fn duplicate_rows_count_once_and_lost_markers_keep_their_positions() {
     let text = "x [mm],y [mm],ux [mm],uy [mm]\n0,0,1,2\n0,0,1,2\n0,0,1,2.5\n9,0,1,2\n9,9,,\n";
     let measured = read_texts(&[("a.csv", text)], &ReadSettings::default()).unwrap();
     near(
