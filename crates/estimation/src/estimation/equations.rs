@@ -119,10 +119,13 @@ impl<'a> Equations<'a> {
 
     /// The number of all parameters.
     pub fn parameter_count(&self) -> usize {
-        let law = self.task.knowledge.law.as_ref();
-        let law = law.map_or(0, |law| law.parameters().len());
         let body = self.body.as_ref().map_or(0, |body| body.columns().len());
-        self.motion.parameters() + law + body
+        self.motion.parameters() + self.law_parameter_count() + body
+    }
+
+    fn law_parameter_count(&self) -> usize {
+        let regressed = self.task.knowledge.law.as_ref();
+        regressed.map_or(0, |law| law.parameters().len())
     }
 
     /// A smooth field near the data, in equilibrium, and its trust of the markers.
@@ -247,15 +250,19 @@ impl<'a> Equations<'a> {
     /// The values of the law's parameters among all parameters.
     pub fn law_values<'b>(&self, parameters: &'b [f64]) -> &'b [f64] {
         let first = self.motion.parameters();
-        let regressed = self.task.knowledge.law.as_ref();
-        &parameters[first..first + regressed.map_or(0, |law| law.parameters().len())]
+        &parameters[first..first + self.law_parameter_count()]
+    }
+
+    /// The coefficients of the forces on the interior among all parameters.
+    pub fn body_coefficients<'b>(&self, parameters: &'b [f64]) -> &'b [f64] {
+        &parameters[self.motion.parameters() + self.law_parameter_count()..]
     }
 
     /// Sets the law and the forces on the interior from the parameters.
     fn set_parameters(&mut self, parameters: &[f64]) {
         if let Some(body) = &self.body {
-            let last = &parameters[parameters.len() - body.columns().len()..];
-            self.forces = body.forces(last, self.forces.len());
+            let coefficients = self.body_coefficients(parameters);
+            self.forces = body.forces(coefficients, self.forces.len());
         }
         if let Some(regressed) = &self.task.knowledge.law {
             self.energy = self

@@ -122,8 +122,8 @@ impl NearestField<'_> {
             if variance_of_force > REDUNDANT * variance {
                 let bodies = self.equations.bodies.iter().zip(&scale.forces);
                 let of_edge = bodies.filter(|(body, _)| body.name == measured.edge);
-                let by_scale: f64 = of_edge.map(|(_, change)| change[axis]).sum();
-                let by_scale = knowledge.scale_deviation * by_scale;
+                let change: f64 = of_edge.map(|(_, change)| change[axis]).sum();
+                let by_scale = knowledge.scale_deviation * change;
                 let spread = (variance_of_force + (complete - noise).max(0.0))
                     .sqrt()
                     .hypot(by_scale);

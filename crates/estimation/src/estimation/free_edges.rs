@@ -113,8 +113,8 @@ fn all_free<'a>(task: &Task<'a>, given: &[Edge]) -> Option<(NearestField<'a>, Ve
     for index in open {
         let mut loaded = edges.clone();
         loaded[index].condition = given[index].condition;
-        let scored = Equations::new(task, &loaded).ok()?;
-        let scored = scored.score_released(&free).ok()?;
+        let equations = Equations::new(task, &loaded).ok()?;
+        let scored = equations.score_released(&free).ok()?;
         let loaded = (&scored.fit, &scored.linear.design, &scored.variances);
         let probability = probability(loaded, &mut free, (&edges, level));
         edges[index].probability = Some(probability);
@@ -257,8 +257,8 @@ impl NearestField<'_> {
     fn rounding(&self, variances: &VarianceComponents) -> f64 {
         const ROUNDING: f64 = 1e-6;
         let observations = self.observations();
-        let moved = observations.displacements.iter().flatten().copied();
-        let moved = DVector::from_iterator(2 * observations.displacements.len(), moved);
+        let components = observations.displacements.iter().flatten().copied();
+        let moved = DVector::from_iterator(2 * observations.displacements.len(), components);
         ROUNDING * ROUNDING * weighted_square(&moved, &observations.weights, &variances.trust)
     }
 

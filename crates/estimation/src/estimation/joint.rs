@@ -65,8 +65,8 @@ pub fn estimate_jointly(
 ) -> Result<JointEstimate, Error> {
     check_joint_frames(frames)?;
     watch("edges of the frames");
-    let frames = frames.par_iter().map(|source| Frame::new(source, law));
-    let frames = frames.collect::<Result<Vec<Frame>, Error>>()?;
+    let searched = frames.par_iter().map(|source| Frame::new(source, law));
+    let frames = searched.collect::<Result<Vec<Frame>, Error>>()?;
     let mut descent = Descent::new(frames.iter().collect(), law);
     let (course, scales) = descent.run(watch)?;
     outcome(&descent, course, scales, settings, watch)
@@ -99,8 +99,8 @@ fn outcome(
 ) -> Result<JointEstimate, Error> {
     let law = descent.law.beginning_at(&course.values);
     let states = descent.frames.par_iter().zip(&course.states);
-    let parts = states.map(|(frame, state)| frame.information(&law, state));
-    let parts = parts.collect::<Result<Vec<FrameInformation>, Error>>()?;
+    let of_frames = states.map(|(frame, state)| frame.information(&law, state));
+    let parts = of_frames.collect::<Result<Vec<FrameInformation>, Error>>()?;
     let directions = directions(&course.information(), &scales);
     if course.ended.is_none() && !directions.iter().any(Direction::is_determined) {
         return Err(Error::input(

@@ -90,8 +90,8 @@ impl NearestField<'_> {
         markers: &[Option<MarkerEstimate>],
         edges: &[Edge],
     ) -> OtherNoise {
-        let unevenness = self.unevenness(markers);
-        let unevenness = unevenness.filter(|_| !self.is_mesh_error(markers, edges));
+        let uneven = self.unevenness(markers);
+        let unevenness = uneven.filter(|_| !self.is_mesh_error(markers, edges));
         OtherNoise {
             ratio: self.contradicted_noise(markers, unevenness.is_some()),
             unevenness,
@@ -142,8 +142,8 @@ impl NearestField<'_> {
         // The standard error of ln of a deviation from the median.
         const ERROR: f64 = 0.72;
         const SURE: f64 = 4.0;
-        let lengths = markers.iter().flatten();
-        let lengths: Vec<f64> = lengths.map(|marker| marker.standardised_residual).collect();
+        let all = markers.iter().flatten();
+        let lengths: Vec<f64> = all.map(|marker| marker.standardised_residual).collect();
         if !self.observations().known_noise || lengths.is_empty() {
             return None;
         }

@@ -113,8 +113,8 @@ impl NearestField<'_> {
 
     fn smoothing(&self) -> Vec<Smoothing> {
         let priors = self.equations.priors(&self.parameters).into_iter();
-        let priors = priors.zip(&self.variances.smoothing).zip(&self.fit.freedom);
-        priors
+        let triples = priors.zip(&self.variances.smoothing).zip(&self.fit.freedom);
+        triples
             .map(|((prior, weight), freedom)| Smoothing {
                 edge: prior.edge,
                 axis: prior.axis,
@@ -161,8 +161,8 @@ impl NearestField<'_> {
     fn neighbours(&self) -> Vec<(usize, Neighbours)> {
         let equations = &self.equations;
         let fitted = equations.neighbours(&self.parameters);
-        let considered = equations.task.knowledge.uncertain_law();
-        let considered = considered.map_or(Vec::new(), |law| law.neighbours());
+        let uncertain = equations.task.knowledge.uncertain_law();
+        let considered = uncertain.map_or(Vec::new(), |law| law.neighbours());
         let first = if fitted.is_empty() {
             self.parameters.len()
         } else {

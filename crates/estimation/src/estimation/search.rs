@@ -262,8 +262,8 @@ impl<'a> Equations<'a> {
         let weights = &observations.weights;
         let mean = weights.iter().sum::<f64>() / weights.len() as f64;
         let residual = fit.residual.iter().enumerate();
-        let pull = residual.map(|(row, r)| -variances.weight(weights, row) / mean * r);
-        let pull: Vec<f64> = pull.collect();
+        let weighted = residual.map(|(row, r)| -variances.weight(weights, row) / mean * r);
+        let pull: Vec<f64> = weighted.collect();
         let force = observations.interpolation.multiply_transposed(&pull);
         let mut changes = self.newton.tangent.changes(&[force]).map_err(solve)?;
         Ok(changes.remove(0))

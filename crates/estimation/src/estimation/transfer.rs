@@ -118,8 +118,8 @@ fn imposed(mesh: &Mesh, edges: &[Edge], start: &[f64]) -> Vec<Option<f64>> {
                 let sides = edges.iter().filter(|other| {
                     other.condition == EdgeCondition::Rigid && other.segment.name == segment.name
                 });
-                let body = sides.flat_map(|side| side.segment.nodes.iter().copied());
-                let body: Vec<usize> = body.collect::<BTreeSet<_>>().into_iter().collect();
+                let nodes = sides.flat_map(|side| side.segment.nodes.iter().copied());
+                let body: Vec<usize> = nodes.collect::<BTreeSet<_>>().into_iter().collect();
                 for (node, u) in body.iter().zip(rigid(mesh, &body, start)) {
                     impose(*node, u.map(Some));
                 }
@@ -157,8 +157,8 @@ fn equilibrium(
         let mut before = parts[0];
         let solved = parts.iter().try_for_each(|part| {
             field.iter_mut().for_each(|u| *u *= part / before);
-            let wanted = field.iter().zip(imposed);
-            let wanted: Vec<f64> = wanted
+            let pairs = field.iter().zip(imposed);
+            let wanted: Vec<f64> = pairs
                 .map(|(u, imposed)| imposed.map_or(*u, |value| part * value))
                 .collect();
             before = *part;

@@ -104,9 +104,9 @@ fn points(path: &Path, settings: &ReadSettings) -> Result<(Vec<Point>, Table), E
     };
     let point = |(row, _): &(Vec<f64>, _)| {
         let number = name.map(|column| row[column]);
-        let number = number.filter(|number| *number >= 0.0 && number.fract() == 0.0);
+        let whole = number.filter(|number| *number >= 0.0 && number.fract() == 0.0);
         (
-            number.map(|number| number as u64),
+            whole.map(|number| number as u64),
             [row[x.0] * x.1, up * row[y.0] * y.1],
         )
     };

@@ -149,11 +149,11 @@ impl Gathering {
         for (count, what, hint) in counted.into_iter().filter(|(count, ..)| *count > 0) {
             warnings.push(Diagnostic::warning("", format!("{what}: {count}")).hint(hint));
         }
-        let tracked = self.frames.values().flat_map(|frame| &frame.markers);
-        let tracked: BTreeMap<usize, [f64; 2]> = tracked
+        let markers = self.frames.values().flat_map(|frame| &frame.markers);
+        let by_number: BTreeMap<usize, [f64; 2]> = markers
             .map(|marker| (marker.number, marker.position))
             .collect();
-        let tracked: Vec<[f64; 2]> = tracked.into_values().collect();
+        let tracked: Vec<[f64; 2]> = by_number.into_values().collect();
         let all: Vec<[f64; 2]> = self.lost.into_values().collect();
         let without = all.len();
         let lost = within(&tracked, all);
@@ -204,8 +204,8 @@ fn with_markers(
             kept.push(Frame { number, ..frame });
         }
     }
-    let known = kept.iter().map(|frame| frame.number);
-    let mut known: Vec<usize> = known.chain(at_rest.iter().copied()).collect();
+    let moving = kept.iter().map(|frame| frame.number);
+    let mut known: Vec<usize> = moving.chain(at_rest.iter().copied()).collect();
     known.sort_unstable();
     if let Some(gaps) = missing_frames(&known) {
         let message = format!("frames are missing: {gaps}");
@@ -217,17 +217,17 @@ fn with_markers(
 /// The numbers that are missing between the first and the last of some frames; `None` where the numbers are regular, such as every tenth of a
 /// camera.
 fn missing_frames(numbers: &[usize]) -> Option<String> {
-    let pairs = numbers.windows(2);
-    let pairs: Vec<[usize; 2]> = pairs.map(|pair| [pair[0], pair[1]]).collect();
+    let neighbours = numbers.windows(2).map(|pair| [pair[0], pair[1]]);
+    let pairs: Vec<[usize; 2]> = neighbours.collect();
     let steps: Vec<usize> = pairs.iter().map(|[from, to]| to - from).collect();
     if steps.len() > 1 && steps.iter().all(|step| *step == steps[0]) {
         return None;
     }
     let gaps = pairs.iter().filter(|[from, to]| *to > from + 1);
-    let gaps = gaps.map(|[from, to]| match to - from {
+    let described = gaps.map(|[from, to]| match to - from {
         2 => (from + 1).to_string(),
         _ => format!("{} to {}", from + 1, to - 1),
     });
-    let gaps: Vec<_> = gaps.collect();
-    (!gaps.is_empty()).then(|| gaps.join(", "))
+    let missing: Vec<String> = described.collect();
+    (!missing.is_empty()).then(|| missing.join(", "))
 }

@@ -111,8 +111,8 @@ impl<'a> Reader<'a> {
         let roles = [(Role::X, x), (Role::Y, y), (Role::Ux, ux), (Role::Uy, uy)];
         let heads = roles.map(|(role, names)| head(role, names));
         let names = || heads.iter().map(|head| head.as_ref()?.1.as_deref());
-        let common = columns::common_unit(names());
-        let common = common.as_deref();
+        let common_unit = columns::common_unit(names());
+        let common = common_unit.as_deref();
         let units = Units {
             given: reading.unit,
             corrected: common,
@@ -173,8 +173,8 @@ impl<'a> Reader<'a> {
         let harmless = harmless.filter_map(|name| find(table, name).map(|(index, _)| index));
         let used: Vec<usize> = used.chain(harmless).collect();
         if named {
-            let others = columns::others(table, &used, ignored);
-            let others: Vec<_> = others.iter().map(|column| &*column.written).collect();
+            let others = columns::others(table, &used, ignored).into_iter();
+            let others: Vec<_> = others.map(|column| &*column.written).collect();
             if !others.is_empty() {
                 let message = format!("ignored columns: {}", others.join(", "));
                 let hint = "--columns lists those that are read";
@@ -182,11 +182,11 @@ impl<'a> Reader<'a> {
                     .push(Diagnostic::warning("", message).hint(hint));
             }
         } else {
-            let lengths = [layout.positions, layout.displacements];
-            let lengths = lengths.as_flattened().iter().chain([&layout.deviation]);
+            let vectors = [layout.positions, layout.displacements];
+            let lengths = vectors.as_flattened().iter().chain([&layout.deviation]);
             let others = [FRAME, TIME, NAME].into_iter().chain(layout.out_of_plane);
-            let known = lengths.copied().chain(others).map(columns::first_name);
-            let known: Vec<&str> = known.filter(|name| !name.is_empty()).collect();
+            let names = lengths.copied().chain(others).map(columns::first_name);
+            let known: Vec<&str> = names.filter(|name| !name.is_empty()).collect();
             columns::check_all(table, &used, &known, ignored)?;
         }
         let columns = |pair: [Length; 2]| pair.map(|(column, _)| column);
@@ -202,8 +202,8 @@ impl<'a> Reader<'a> {
 
     /// The columns whose fields are numbers.
     fn read(&self) -> impl Iterator<Item = usize> {
-        let lengths = self.positions.into_iter().chain(self.displacements);
-        let lengths = lengths.chain(self.deviation).map(|(column, _)| column);
+        let vectors = self.positions.into_iter().chain(self.displacements);
+        let lengths = vectors.chain(self.deviation).map(|(column, _)| column);
         let time = self.time.map(|(column, _)| column);
         let others = [self.frame, time, self.lost, self.converged];
         lengths.chain(others.into_iter().flatten())

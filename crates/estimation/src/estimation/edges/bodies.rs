@@ -63,10 +63,9 @@ pub fn bodies<'a>(
             None => groups.push((named, vec![index])),
         }
     }
-    let members = groups.into_iter().map(|(_, members)| members);
-    let members: Vec<Vec<usize>> = members.collect();
-    let holds = members.iter().map(|members| hold(mesh, &edges, members));
-    let owned: Vec<Hold> = holds.collect();
+    let (_, members): (Vec<_>, Vec<Vec<usize>>) = groups.into_iter().unzip();
+    let of_members = members.iter().map(|members| hold(mesh, &edges, members));
+    let owned: Vec<Hold> = of_members.collect();
     let holds: Vec<&Hold> = owned.iter().collect();
     let rests = [0, 1].map(|axis| shared_rests(mesh, &holds, axis));
     let rests_of = |body: usize| {
@@ -94,8 +93,8 @@ fn hold(mesh: &Mesh, edges: &[(&Segment, EdgeCondition)], members: &[usize]) -> 
     let condition = edges[members[0]].1;
     let nodes_of = |wanted: &dyn Fn(&Segment) -> bool| {
         let segments = members.iter().map(|edge| edges[*edge].0);
-        let segments = segments.filter(|segment| wanted(segment));
-        segments
+        let chosen = segments.filter(|segment| wanted(segment));
+        chosen
             .flat_map(|segment| segment.nodes.iter().copied())
             .collect()
     };

@@ -153,11 +153,11 @@ impl EdgeMotion {
     fn smooth(&mut self, segment: &Segment, singular: [bool; 2], spacing: f64, moved: &mut Movers) {
         let length = segment.length();
         let edges = segment.nodes.len() - 1;
-        let spans = (length / (SPACINGS * spacing)).round() as usize;
+        let even_spans = (length / (SPACINGS * spacing)).round() as usize;
         // Spans that become shorter towards an end are longer elsewhere.
         let more = 1.0 + singular.map(f64::from).iter().sum::<f64>() / 4.0;
-        let spans = spans.clamp(1, MOST_SPANS) as f64 * more;
-        let spans = (spans.round() as usize).min(edges);
+        let graded_spans = even_spans.clamp(1, MOST_SPANS) as f64 * more;
+        let spans = (graded_spans.round() as usize).min(edges);
         let spline = BSpline::new([0.0, 1.0], spans, 3, Ends::Clamped).graded(singular);
         let coefficients = [0, 1].map(|axis| {
             let [first, last] = segment.ends().map(|node| 2 * node + axis);
@@ -178,8 +178,8 @@ impl EdgeMotion {
         let square: f64 = offsets.iter().flatten().map(|offset| offset * offset).sum();
         let is_uneven = square > (UNEVEN * spacing).powi(2) * offsets.len() as f64;
         let gradient = is_uneven.then(|| self.add_parameters(4));
-        let nodes = segment.nodes.iter().zip(along).zip(offsets);
-        let nodes = nodes.map(|((node, position), offset)| SmoothNode {
+        let triples = segment.nodes.iter().zip(along).zip(offsets);
+        let nodes = triples.map(|((node, position), offset)| SmoothNode {
             node: *node,
             position,
             offset,
@@ -280,10 +280,8 @@ impl EdgeMotion {
             };
             for axis in [0, 1] {
                 let q = combinations(&imposed.unknowns, &coefficients[axis], p);
-                let rows = spline.roughness();
-                let rows: Vec<_> = rows
-                    .map(|row| Combination::sum(&q, row.into_iter()))
-                    .collect();
+                let sum = |row: Vec<(usize, f64)>| Combination::sum(&q, row.into_iter());
+                let rows: Vec<_> = spline.roughness().map(sum).collect();
                 let mut slopes = DMatrix::zeros(rows.len(), self.parameters);
                 for (row, combination) in rows.iter().enumerate() {
                     for (index, slope) in &combination.slopes {

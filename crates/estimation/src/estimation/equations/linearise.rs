@@ -33,8 +33,8 @@ impl Equations<'_> {
         let residual =
             self.with_potential(|newton, potential| newton.tangent.at(potential, field, &describe));
         let residual = residual.map_err(solve)?;
-        let motions = self.motion.at(&state.parameters);
-        let motions = motions.motions(self.motion.parameters(), field.len());
+        let imposed = self.motion.at(&state.parameters);
+        let motions = imposed.motions(self.motion.parameters(), field.len());
         let slopes = self.law_slopes(&state.parameters, field)?;
         let mut forces = vec![residual.clone()];
         for motion in &motions {
@@ -94,8 +94,8 @@ impl Equations<'_> {
     /// A measured force as a function of the field.
     pub fn grip_of_edge(&self, measured: &MeasuredForce, field: &[f64]) -> Result<Grip, Error> {
         let bodies = self.bodies.iter();
-        let bodies = bodies.filter(|body| body.name == measured.edge);
-        let shares = bodies.flat_map(|body| &body.shares[measured.axis]);
+        let of_edge = bodies.filter(|body| body.name == measured.edge);
+        let shares = of_edge.flat_map(|body| &body.shares[measured.axis]);
         let shares: Vec<Share> = shares.copied().collect();
         self.grip(&shares, measured.axis, field)
     }

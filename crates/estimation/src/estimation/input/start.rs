@@ -80,14 +80,14 @@ impl Polynomial {
         let samples: Vec<_> = (0..SAMPLES)
             .filter_map(|_| rows.sample(&mut random))
             .collect();
-        let starts = samples.into_par_iter();
-        let mut starts: Vec<_> = starts
+        let mut starts: Vec<_> = samples
+            .into_par_iter()
             .filter_map(|start| rows.concentrated(start, 2))
             .collect();
         starts.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let better = starts.into_iter().take(KEPT);
-        let better = better.filter_map(|(_, start)| rows.concentrated(start, 30));
-        let best = better.min_by(|a, b| a.0.total_cmp(&b.0));
+        let kept = starts.into_iter().take(KEPT);
+        let concentrated = kept.filter_map(|(_, start)| rows.concentrated(start, 30));
+        let best = concentrated.min_by(|a, b| a.0.total_cmp(&b.0));
         best.map(|(_, coefficients)| rows.polynomial(coefficients))
     }
 

@@ -133,8 +133,8 @@ impl<'a> Descent<'a> {
     /// As the search of a frame.
     fn scale(&mut self) -> Result<(), Error> {
         let frames = self.frames.par_iter();
-        let predicted = frames.map(|frame| frame.cross_predict(&self.law, None));
-        let predicted = predicted.collect::<Result<Vec<_>, Error>>()?;
+        let of_frames = frames.map(|frame| frame.cross_predict(&self.law, None));
+        let predicted = of_frames.collect::<Result<Vec<_>, Error>>()?;
         let forces = self.frames.iter().zip(&predicted);
         let forces = forces.flat_map(|(frame, state)| frame.measured().iter().zip(&state.forces));
         let [product, square] = forces.fold([0.0; 2], |[product, square], (measured, force)| {
@@ -289,8 +289,8 @@ impl<'a> Descent<'a> {
         let length = course.standard_errors(change);
         let mut share = 1.0;
         loop {
-            let values = course.values.iter().zip(change.iter());
-            let values = values
+            let pairs = course.values.iter().zip(change.iter());
+            let values = pairs
                 .map(|(value, change)| value + share * change)
                 .collect();
             let next = self.at(course, values, settled);

@@ -271,8 +271,8 @@ impl<'a> Frame<'a> {
         let linear = equations.linearise(&state)?;
         let regression = equations.regression(&state, true, &linear);
         let normal = regression.equations(&variances);
-        let gain = knowledge.measured_forces().iter();
-        let gain = gain.map(|one| one.common_deviation * one.force / one.standard_deviation);
+        let measured = knowledge.measured_forces().iter();
+        let gain = measured.map(|one| one.common_deviation * one.force / one.standard_deviation);
         let gain = linear
             .force_rows
             .0

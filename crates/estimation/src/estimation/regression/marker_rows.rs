@@ -28,8 +28,9 @@ impl MarkerRows<'_> {
         let whitening = Whitening::new(sites, &noise.correlation);
         let scaled = self.scaled();
         let columns = scaled.column_iter();
-        let root = columns.flat_map(|column| whitening.apply_inverse_transposed(column.as_slice()));
-        let root = DMatrix::from_iterator(scaled.nrows(), scaled.ncols(), root);
+        let entries =
+            columns.flat_map(|column| whitening.apply_inverse_transposed(column.as_slice()));
+        let root = DMatrix::from_iterator(scaled.nrows(), scaled.ncols(), entries);
         root.tr_mul(&root) * noise.variance
     }
 

@@ -177,8 +177,8 @@ impl Regression<'_> {
         let forms: Vec<Form> = self.priors.iter().map(Form::new).collect();
         let (matrix, target, _) = self.system(&self.normal(variances), &forms, variances);
         let data = weighted_square(&self.residual, self.weights, &variances.trust);
-        let rough = self.priors.iter().zip(&variances.smoothing);
-        let rough = rough.map(|(prior, smoothing)| {
+        let priors = self.priors.iter().zip(&variances.smoothing);
+        let rough = priors.map(|(prior, smoothing)| {
             let square: f64 = prior.values.iter().map(|value| value * value).sum();
             smoothing * square
         });

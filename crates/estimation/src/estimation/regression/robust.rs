@@ -79,8 +79,8 @@ impl Robust {
         let freedom = (2.0 * count - effective).max(1.0);
         if self == Self::No {
             let squares: f64 = distances.iter().map(|d| d * d).sum();
-            let variance = if known { 1.0 } else { squares / freedom };
-            let variance = variance.max(f64::MIN_POSITIVE);
+            let level = if known { 1.0 } else { squares / freedom };
+            let variance = level.max(f64::MIN_POSITIVE);
             return Noise {
                 variance,
                 sound: variance,

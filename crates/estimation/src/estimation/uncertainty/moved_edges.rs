@@ -46,8 +46,7 @@ impl NearestField<'_> {
         let designs = self.marker_changes(&strips)?;
         let columns = (0..designs.ncols()).map(|column| designs.columns(column, 1).into_owned());
         let mut moved: Vec<MovedEdge> = parts.into_iter().zip(columns).collect();
-        let grips = edges.iter().filter(|edge| moves_as_stated(edge));
-        let grips: Vec<&Edge> = grips.collect();
+        let grips: Vec<&Edge> = edges.iter().filter(|edge| moves_as_stated(edge)).collect();
         if !grips.is_empty() {
             moved.push((MovedPart::Outline, self.moved_outline(&grips, all)?));
         }

@@ -29,9 +29,9 @@ impl Equations<'_> {
     /// q of a field, two numbers per marker, in mm.
     pub fn magnified(&self, field: &[f64]) -> Vec<f64> {
         let observations = self.task.observations;
-        let moved = observations.interpolation.multiply(field);
-        let positions = observations.positions.iter().flatten();
-        let mut positions: Vec<f64> = positions.zip(moved).map(|(x, u)| x + u).collect();
+        let displacements = observations.interpolation.multiply(field);
+        let at_rest = observations.positions.iter().flatten();
+        let mut positions: Vec<f64> = at_rest.zip(displacements).map(|(x, u)| x + u).collect();
         let count = observations.positions.len() as f64;
         let middle = [0, 1].map(|axis| positions.iter().skip(axis).step_by(2).sum::<f64>() / count);
         let rows = positions.iter_mut().enumerate();

@@ -160,7 +160,10 @@ impl NearestField<'_> {
         let thickness = self.equations.task.specimen.thickness;
         let energy = SheetEnergy::of_mesh(self.equations.energy.laws().refined(), &fine, thickness);
         let forces = match &self.equations.body {
-            Some(_) => BodyForce::new(&fine, &fixed).forces(self.body_coefficients(), fixed.len()),
+            Some(_) => {
+                let coefficients = self.equations.body_coefficients(&self.parameters);
+                BodyForce::new(&fine, &fixed).forces(coefficients, fixed.len())
+            }
             None => vec![0.0; fixed.len()],
         };
         let pushed = Sum::with_forces(&energy, &forces);
@@ -193,21 +196,12 @@ impl NearestField<'_> {
         })
     }
 
-    fn body_coefficients(&self) -> &[f64] {
-        let count = self
-            .equations
-            .body
-            .as_ref()
-            .map_or(0, |body| body.columns().len());
-        &self.parameters[self.parameters.len() - count..]
-    }
-
     /// d_F of each body.
     fn force_differences(&self, fine: &Fine) -> Vec<[f64; 2]> {
         let reactions = self.reactions();
         let bodies = &self.equations.bodies;
-        let holds: Vec<Hold> = bodies.iter().map(|body| fine.hold(body)).collect();
-        let holds: Vec<&Hold> = holds.iter().collect();
+        let owned: Vec<Hold> = bodies.iter().map(|body| fine.hold(body)).collect();
+        let holds: Vec<&Hold> = owned.iter().collect();
         let shares = reaction_shares(&fine.mesh, &holds).into_iter().zip(bodies);
         let difference = |(shares, body): ([Vec<Share>; 2], &Body)| {
             let there = Body {
@@ -264,9 +258,9 @@ impl Equations<'_> {
         variances: &VarianceComponents,
     ) -> DVector<f64> {
         let weights = &self.task.observations.weights;
-        let weighted = displacements.iter().enumerate();
+        let rows = displacements.iter().enumerate();
         let weighted =
-            weighted.map(|(row, d)| -variances.weight(weights, row) * d / variances.variance);
+            rows.map(|(row, d)| -variances.weight(weights, row) * d / variances.variance);
         let weighted = DVector::from_iterator(displacements.len(), weighted);
         design.tr_mul(&weighted)
     }
@@ -319,14 +313,14 @@ fn held_inside(mesh: &Mesh, fine: &Mesh, edge: &Edge, axis: usize, held: &[bool]
         let nodes = mesh.cell(coarse);
         let parts = (4 * coarse..4 * coarse + 4).flat_map(|part| fine.cell(part));
         let sides = mesh.shape(coarse).edges();
-        let sides = sides.iter().map(|side| [nodes[side[0]], nodes[side[1]]]);
-        let sides: Vec<_> = sides
+        let ends = sides.iter().map(|side| [nodes[side[0]], nodes[side[1]]]);
+        let held_sides: Vec<_> = ends
             .filter(|ends| ends.iter().all(|end| held[2 * end + axis]))
             .collect();
         let is_held = nodes.iter().all(|node| held[2 * node + axis])
             && nodes.iter().any(|node| pad.contains(node));
         let on_side = |node: usize| {
-            let mut near = sides
+            let mut near = held_sides
                 .iter()
                 .filter(|ends| ends.iter().any(|end| pad.contains(end)));
             near.any(|ends| is_near(fine.nodes[node], ends.map(|end| mesh.nodes[end])))

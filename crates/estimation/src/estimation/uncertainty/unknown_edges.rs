@@ -36,8 +36,8 @@ impl NearestField<'_> {
         if gap == 0.0 {
             return (Vec::new(), DMatrix::zeros(0, 0));
         }
-        let free = edges.iter().enumerate();
-        let free = free.filter(|(_, edge)| edge.has_strip());
+        let indexed = edges.iter().enumerate();
+        let free = indexed.filter(|(_, edge)| edge.has_strip());
         let strips = free.flat_map(|(index, edge)| {
             let strips = self.strips_between_points(edge, gap, most).into_iter();
             strips.map(move |strip| (index, strip))
