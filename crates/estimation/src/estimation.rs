@@ -117,7 +117,7 @@ pub fn nearest_field(
         knowledge,
     };
     let nearest = if may_free_edges || knowledge.physics != Physics::Exact {
-        free_edges::search(&task, edges)?.0
+        free_edges::search(&task, edges)?
     } else {
         Equations::new(&task, &edges)?.run(MOST_STEPS)?
     };
@@ -142,7 +142,7 @@ fn estimate_with(
             observations,
             knowledge,
         };
-        let (nearest, edges) = free_edges::search(&task, edges.clone())?;
+        let nearest = free_edges::search(&task, edges.clone())?;
         let markers = nearest.markers(None);
         if nearest.ends_at_gross_errors(&markers) {
             let ended = FieldEstimate {
@@ -151,9 +151,9 @@ fn estimate_with(
             };
             return Ok((ended, noise::OtherNoise::default()));
         }
-        let other = nearest.other_noise(&markers, &edges);
+        let other = nearest.other_noise(&markers);
         if other.is_none() {
-            Ok((nearest.into_estimate(&edges)?, other))
+            Ok((nearest.into_estimate()?, other))
         } else {
             Ok((FieldEstimate::default(), other))
         }

@@ -36,6 +36,8 @@ pub const AT_THE_END: NewtonSettings = NewtonSettings {
 /// Its parameters p are those of the edges' motion, then those of the law, then those of the forces on the interior.
 pub struct Equations<'a> {
     pub task: Task<'a>,
+    /// The edges with their conditions.
+    pub edges: Vec<Edge>,
     pub motion: EdgeMotion,
     /// The bodies that hold the sheet.
     pub bodies: Vec<Body>,
@@ -103,6 +105,7 @@ impl<'a> Equations<'a> {
         };
         Ok(Self {
             task: task.clone(),
+            edges: edges.to_vec(),
             bodies: bodies(mesh, conditions.iter().copied()),
             motion,
             energy,

@@ -2,7 +2,6 @@
 
 use super::edges::Body;
 use super::equations::Grip;
-use super::input::Edge;
 use super::outcome::{EdgeForce, ForceCheck, FoundParameter};
 use super::search::{MeshError, NearestField};
 use super::uncertainty::ScaleChange;
@@ -153,7 +152,7 @@ impl NearestField<'_> {
     }
 
     /// ∮ Ψ ds/∫ Ψ dA along the free edges.
-    pub(super) fn growth(&self, edges: &[Edge]) -> f64 {
+    pub(super) fn growth(&self) -> f64 {
         let mesh = self.equations.task.specimen.mesh;
         let energy = |cell: usize, local: [f64; 2]| {
             let gradient = PlaneTensor::from(mesh.gradient_at(&self.field, cell, local));
@@ -168,7 +167,8 @@ impl NearestField<'_> {
                 .sum()
         };
         let total: f64 = (0..mesh.cell_count()).map(over).sum();
-        let free = edges.iter().filter(|edge| !edge.is_loaded());
+        let edges = self.equations.edges.iter();
+        let free = edges.filter(|edge| !edge.is_loaded());
         let along = |pair: &[usize]| {
             let [a, b] = [mesh.nodes[pair[0]], mesh.nodes[pair[1]]];
             let middle = [0, 1].map(|axis| (a[axis] + b[axis]) / 2.0);

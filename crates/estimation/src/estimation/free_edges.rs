@@ -21,10 +21,7 @@ const TRIAL_STEPS: usize = 20;
 ///
 /// # Errors
 /// As the search with the edges as they are.
-pub fn search<'a>(
-    task: &Task<'a>,
-    edges: Vec<Edge>,
-) -> Result<(NearestField<'a>, Vec<Edge>), Error> {
+pub fn search<'a>(task: &Task<'a>, edges: Vec<Edge>) -> Result<NearestField<'a>, Error> {
     if task.knowledge.physics == Physics::Exact {
         return decided(task, edges);
     }
@@ -36,28 +33,28 @@ pub fn search<'a>(
         knowledge: &knowledge,
         ..task.clone()
     };
-    let Ok((field, edges)) = decided(&exact, edges.clone()) else {
+    let Ok(field) = decided(&exact, edges.clone()) else {
         return decided(task, edges);
     };
-    match nearest_from(task, &edges, MOST_STEPS, &field) {
-        Ok(nearest) => Ok((nearest, edges)),
-        Err(Error::Input(_)) => Err(Error::input(
+    let weighted = nearest_from(task, &field.equations.edges, MOST_STEPS, &field);
+    weighted.map_err(|fault| match fault {
+        Error::Input(_) => Error::input(
             "the data do not determine forces on the interior beside the motion of the edges",
             "state more about the edges (free, rigid, known), or let equilibrium hold exactly (--physics exact)",
-        )),
-        Err(fault) => Err(fault),
-    }
+        ),
+        fault => fault,
+    })
 }
 
 /// Searches with all edges to be tested free. Where the data contradict one of them, searches with the edges as they are, then with those to be
 /// tested freed one after the other, the longest first. Where many edges that follow the markers lead to no solution, the search begins with all
 /// of them free, and releases those that the data contradict.
-fn decided<'a>(task: &Task<'a>, edges: Vec<Edge>) -> Result<(NearestField<'a>, Vec<Edge>), Error> {
+fn decided<'a>(task: &Task<'a>, edges: Vec<Edge>) -> Result<NearestField<'a>, Error> {
     if let Some(confirmed) = all_free(task, &edges) {
         return Ok(confirmed);
     }
     match nearest(task, &edges, MOST_STEPS) {
-        Ok(field) if field.ends_at_gross_errors(&field.markers(None)) => Ok((field, edges)),
+        Ok(field) if field.ends_at_gross_errors(&field.markers(None)) => Ok(field),
         Ok(field) => from_loaded(task, field, edges),
         Err(fault) => from_free(task, edges).map_err(|_| fault),
     }
@@ -99,7 +96,7 @@ fn freed(given: &[Edge], open: &[usize]) -> Vec<Edge> {
 
 /// The nearest field with all edges to be tested free, if loading any of them, in one linearised step, reduces the misfit no more than noise
 /// would. Not used with robust weights, because gross errors could hide the effect of such an edge.
-fn all_free<'a>(task: &Task<'a>, given: &[Edge]) -> Option<(NearestField<'a>, Vec<Edge>)> {
+fn all_free<'a>(task: &Task<'a>, given: &[Edge]) -> Option<NearestField<'a>> {
     let open = open(given);
     if open.is_empty() || task.knowledge.robust != Robust::No {
         return None;
@@ -116,7 +113,7 @@ fn all_free<'a>(task: &Task<'a>, given: &[Edge]) -> Option<(NearestField<'a>, Ve
         let equations = Equations::new(task, &loaded).ok()?;
         let scored = equations.score_released(&free).ok()?;
         let loaded = (&scored.fit, &scored.linear.design, &scored.variances);
-        let probability = probability(loaded, &mut free, (&edges, level));
+        let probability = probability(loaded, &mut free, level);
         edges[index].probability = Some(probability);
         if probability < level {
             return None;
@@ -131,7 +128,7 @@ fn from_loaded<'a>(
     task: &Task<'a>,
     mut nearest_field: NearestField<'a>,
     mut edges: Vec<Edge>,
-) -> Result<(NearestField<'a>, Vec<Edge>), Error> {
+) -> Result<NearestField<'a>, Error> {
     let open = open(&edges);
     let level = LEVEL / open.len() as f64;
     for index in open {
@@ -148,7 +145,7 @@ fn from_loaded<'a>(
         // Where no equilibrium with the free edge is found, the edge is not free.
         let mut trial = nearest_from(task, &freed, TRIAL_STEPS, &nearest_field);
         let probability = trial.as_mut().map_or(0.0, |trial| {
-            probability(nearest_field.fitted(), trial, (&freed, level))
+            probability(nearest_field.fitted(), trial, level)
         });
         edges[index].probability = Some(probability);
         if let (Ok(trial), true) = (trial, probability >= level && loaded > 1) {
@@ -160,10 +157,7 @@ fn from_loaded<'a>(
 }
 
 /// Releases edges that are free at first, where the data contradict that.
-fn from_free<'a>(
-    task: &Task<'a>,
-    given: Vec<Edge>,
-) -> Result<(NearestField<'a>, Vec<Edge>), Error> {
+fn from_free<'a>(task: &Task<'a>, given: Vec<Edge>) -> Result<NearestField<'a>, Error> {
     let open = open(&given);
     let mut edges = freed(&given, &open);
     let level = LEVEL / open.len() as f64;
@@ -174,7 +168,7 @@ fn from_free<'a>(
         let Ok(trial) = nearest_from(task, &released, TRIAL_STEPS, &nearest_field) else {
             continue;
         };
-        let probability = probability(trial.fitted(), &mut nearest_field, (&edges, level));
+        let probability = probability(trial.fitted(), &mut nearest_field, level);
         if probability < level {
             (edges, nearest_field) = (released, trial);
         }
@@ -188,7 +182,7 @@ fn settle<'a>(
     task: &Task<'a>,
     mut nearest_field: NearestField<'a>,
     mut edges: Vec<Edge>,
-) -> Result<(NearestField<'a>, Vec<Edge>), Error> {
+) -> Result<NearestField<'a>, Error> {
     let before = singular_corners(&edges);
     for edge in edges.iter_mut().filter(|edge| edge.tested) {
         edge.of_body = true;
@@ -196,7 +190,8 @@ fn settle<'a>(
     if singular_corners(&edges) != before {
         nearest_field = nearest_from(task, &edges, MOST_STEPS, &nearest_field)?;
     }
-    Ok((nearest_field, edges))
+    nearest_field.equations.edges = edges;
+    Ok(nearest_field)
 }
 
 /// The probability that noise alone causes the difference of the misfits with an edge free and loaded. If it is below the level, the
@@ -204,7 +199,7 @@ fn settle<'a>(
 fn probability(
     (loaded, design, variances): (&Fit, &DMatrix<f64>, &VarianceComponents),
     free: &mut NearestField,
-    (edges, level): (&[Edge], f64),
+    level: f64,
 ) -> f64 {
     let count = loaded.residual.len() as f64;
     let more = (loaded.effective - free.fit.effective).max(1.0);
@@ -220,8 +215,8 @@ fn probability(
     if probability >= level {
         return probability;
     }
-    let mesh_error = free.mesh_error(edges).map(|error| error.markers.clone());
-    let Ok(granted) = free.granted(edges, mesh_error.as_deref()) else {
+    let mesh_error = free.mesh_error().map(|error| error.markers.clone());
+    let Ok(granted) = free.granted(mesh_error.as_deref()) else {
         return probability;
     };
     let by_granted = |fit, design| free.granted_misfit(&granted, (fit, design), variances);

@@ -5,7 +5,6 @@
 //! equations where it is likelier than noise would make it, each under the likelier of the two noises ([`Reference`], in one
 //! linearised step).
 
-use super::input::Edge;
 use super::outcome::{
     Alternative, Answer, Contradiction, ForceCheck, NoiseCorrelation, Reason, Trial, Verdict, Worst,
 };
@@ -52,10 +51,9 @@ pub struct Judgement {
 /// Where the tangent cannot be used to solve systems.
 pub fn judge(
     nearest_field: &mut NearestField,
-    edges: &[Edge],
     mesh_error: Option<&MeshError>,
 ) -> Result<Judgement, Error> {
-    let all = released(nearest_field, edges, &|_| true);
+    let all = released(nearest_field, &|_| true);
     let (fit, variances) = match &all {
         Some(all) => (&all.fit, &all.variances),
         None => (&nearest_field.fit, &nearest_field.variances),
@@ -65,7 +63,7 @@ pub fn judge(
         return Ok(Judgement::default());
     };
     let at_markers = mesh_error.map(|error| &error.markers[..]);
-    let granted = nearest_field.granted(edges, at_markers)?;
+    let granted = nearest_field.granted(at_markers)?;
     let base = Model::of_search(&rows, nearest_field).granting(&rows, &granted);
     let noises = base.noises(&rows);
     let columns = nearest_field.alternatives()?;
@@ -77,20 +75,13 @@ pub fn judge(
         granted: &granted,
         base: &base,
     };
-    judgement(
-        &basis,
-        nearest_field,
-        edges,
-        (&columns, all.as_ref()),
-        noises,
-    )
+    judgement(&basis, nearest_field, (&columns, all.as_ref()), noises)
 }
 
 /// Tries the alternatives, among them the model with all edges released, and draws the conclusion.
 fn judgement(
     basis: &Basis,
     nearest_field: &mut NearestField,
-    edges: &[Edge],
     (columns, all): (&[Column], Option<&Model>),
     mut noises: Vec<CorrelatedNoise>,
 ) -> Result<Judgement, Error> {
@@ -102,14 +93,13 @@ fn judgement(
     let level = if few.is_some() { STRICT } else { LEVEL };
     let improvement = improvement(trials.iter().chain(&together), level);
     let gap = nearest_field.equations.task.knowledge.edge_gap.filter(|_| {
-        improvement.is_some()
-            && basis.explains_all(nearest_field, edges, (columns, noise), (all, level))
+        improvement.is_some() && basis.explains_all(nearest_field, (columns, noise), (all, level))
     });
     let unknown_edges = gap.map(Reason::UnknownEdges);
     let against = improvement.filter(|_| unknown_edges.is_none());
     let mut contradiction = None;
     if against.is_some() {
-        let (of_edges, contradicted) = basis.of_edges(nearest_field, edges, (together, level))?;
+        let (of_edges, contradicted) = basis.of_edges(nearest_field, (together, level))?;
         trials.extend(of_edges);
         contradiction = contradicted;
     }

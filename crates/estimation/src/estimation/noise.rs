@@ -6,7 +6,7 @@
 //!
 //! The field remains the one nearest to the data; only its covariance follows the noise that was found.
 
-use super::input::{Edge, Observations};
+use super::input::Observations;
 use super::judge::Judgement;
 use super::outcome::MarkerEstimate;
 use super::regression::MarkerRows;
@@ -85,13 +85,9 @@ impl Observations {
 
 impl NearestField<'_> {
     /// The noise of the markers where it differs from the assumed noise.
-    pub(super) fn other_noise(
-        &self,
-        markers: &[Option<MarkerEstimate>],
-        edges: &[Edge],
-    ) -> OtherNoise {
+    pub(super) fn other_noise(&self, markers: &[Option<MarkerEstimate>]) -> OtherNoise {
         let uneven = self.unevenness(markers);
-        let unevenness = uneven.filter(|_| !self.is_mesh_error(markers, edges));
+        let unevenness = uneven.filter(|_| !self.is_mesh_error(markers));
         OtherNoise {
             ratio: self.contradicted_noise(markers, unevenness.is_some()),
             unevenness,
@@ -99,7 +95,7 @@ impl NearestField<'_> {
     }
 
     /// Whether a large part of the markers' residuals is the discretisation error or rounding, which are no noise.
-    fn is_mesh_error(&self, markers: &[Option<MarkerEstimate>], edges: &[Edge]) -> bool {
+    fn is_mesh_error(&self, markers: &[Option<MarkerEstimate>]) -> bool {
         const MUCH: f64 = 0.2;
         const ROUNDING: f64 = 1e-6;
         let observations = self.observations();
@@ -114,7 +110,7 @@ impl NearestField<'_> {
         if residual <= ROUNDING * size(&|row| observations.displacements[row / 2][row % 2]) {
             return true;
         }
-        let mesh_error = self.mesh_error(edges);
+        let mesh_error = self.mesh_error();
         mesh_error.is_some_and(|error| size(&|row| error.markers[row]) > MUCH * residual)
     }
 

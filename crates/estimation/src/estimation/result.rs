@@ -22,15 +22,15 @@ const FALSE_ALARMS: f64 = 1e-3;
 
 impl NearestField<'_> {
     /// The field with all results that follow from it.
-    pub fn into_estimate(mut self, edges: &[Edge]) -> Result<FieldEstimate, Error> {
+    pub fn into_estimate(mut self) -> Result<FieldEstimate, Error> {
         let known = self.known_mesh_error.take();
-        let mesh_error = known.unwrap_or_else(|| self.compute_mesh_error(edges));
+        let mesh_error = known.unwrap_or_else(|| self.compute_mesh_error());
         let mesh_error = mesh_error.as_ref();
-        let judged = judge(&mut self, edges, mesh_error)?;
+        let judged = judge(&mut self, mesh_error)?;
         let markers = self.markers(mesh_error);
         let known_noise = self.observations().known_noise;
         let robust = self.equations.task.knowledge.robust;
-        let uncertain = self.include_uncertainties(edges, mesh_error, &judged)?;
+        let uncertain = self.include_uncertainties(mesh_error, &judged)?;
         let variance_ratio = judged.noises.first().map_or(1.0, |noise| noise.variance);
         let weights = &self.observations().weights;
         let mean = weights.iter().sum::<f64>() / weights.len() as f64;
@@ -41,7 +41,7 @@ impl NearestField<'_> {
             cells: self.cells(mesh_error)?,
             holds_mesh_error: mesh_error.is_some(),
             imbalance: self.imbalance(),
-            growth: self.growth(edges),
+            growth: self.growth(),
             verdict: judged.verdict.with_forces(&uncertain.force_checks),
             contradiction: judged.contradiction,
             markers,
@@ -56,7 +56,7 @@ impl NearestField<'_> {
                 None => RULE.into(),
             },
             interior_forces: self.equations.forces.clone(),
-            edges: edges.iter().map(Edge::outcome).collect(),
+            edges: self.equations.edges.iter().map(Edge::outcome).collect(),
             steps: self.steps,
             reactions: self.reactions(),
             multipliers: self.multipliers,
@@ -69,13 +69,12 @@ impl NearestField<'_> {
     /// in between, because they do not include all uncertainties.
     fn include_uncertainties(
         &mut self,
-        edges: &[Edge],
         mesh_error: Option<&MeshError>,
         judged: &Judgement,
     ) -> Result<FieldEstimate, Error> {
         let rows = self.linear.design.nrows() as f64;
         let white = (rows - self.fit.effective).max(1.0);
-        let considered = self.considered(edges)?;
+        let considered = self.considered()?;
         let [by_law, by_all] = self.force_deviations(&considered)?;
         let scale = self.scale_response();
         let scale_change = self.scale_change(&scale)?;

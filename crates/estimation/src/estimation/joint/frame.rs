@@ -104,9 +104,9 @@ impl<'a> Frame<'a> {
                 observations,
                 knowledge: &knowledge,
             };
-            let (nearest, edges) = free_edges::search(&task, first.clone())?;
-            let other = nearest.other_noise(&nearest.markers(None), &edges);
-            Ok((edges, other))
+            let nearest = free_edges::search(&task, first.clone())?;
+            let other = nearest.other_noise(&nearest.markers(None));
+            Ok((nearest.equations.edges, other))
         };
         let (edges, _) = with_observed_noise(&mut observations, search)?;
         Ok(Self {
@@ -170,7 +170,7 @@ impl<'a> Frame<'a> {
         };
         let (effective, residuals) = (nearest.fit.effective, self.residuals(&nearest));
         let variances = nearest.variances.clone();
-        let difference = nearest.mesh_difference(&self.edges);
+        let difference = nearest.mesh_difference();
         let about = self.law_equations(nearest, law, difference.as_ref())?;
         let reduced = about.reduced;
         let rows = MarkerRows {

@@ -40,18 +40,17 @@ impl Basis<'_> {
     pub fn of_edges(
         &self,
         nearest_field: &mut NearestField,
-        edges: &[Edge],
         (together, level): (Option<Trial>, f64),
     ) -> Result<(Vec<Trial>, Option<Contradiction>), Error> {
-        let each = self.edge_by_edge(nearest_field, edges);
+        let each = self.edge_by_edge(nearest_field);
         let contradiction = contradicted(together.as_ref(), &each, level);
         let mut trials: Vec<Trial> = together.filter(|_| each.len() > 1).into_iter().collect();
         let first = contradiction.iter().find_map(|all| all.edges.first());
         if let Some((name, _)) = first {
-            trials.extend(self.other_conditions(nearest_field, edges, name));
+            trials.extend(self.other_conditions(nearest_field, name));
         }
         trials.extend(each);
-        let moved = nearest_field.moved_edges(edges)?.into_iter();
+        let moved = nearest_field.moved_edges()?.into_iter();
         trials.extend(moved.filter_map(|edge| self.moved(nearest_field, edge)));
         Ok((trials, contradiction))
     }
@@ -61,17 +60,15 @@ impl Basis<'_> {
     pub fn explains_all(
         &self,
         nearest_field: &NearestField,
-        edges: &[Edge],
         (columns, noise): (&[Column], Option<&CorrelatedNoise>),
         (all, level): (Option<&Model>, f64),
     ) -> bool {
         let is_shown = |name: &str| {
-            let mut shown = edges
-                .iter()
-                .filter(|edge| edge.has_strip() && edge.segment.outer);
+            let edges = nearest_field.equations.edges.iter();
+            let mut shown = edges.filter(|edge| edge.has_strip() && edge.segment.outer);
             shown.any(|edge| edge.segment.name == name)
         };
-        let Some(loaded) = self.released(nearest_field, edges, &is_shown) else {
+        let Some(loaded) = self.released(nearest_field, &is_shown) else {
             return false;
         };
         let residual = |model: &Model| model.residual_rms(self.rows, nearest_field);
@@ -94,10 +91,9 @@ impl Basis<'_> {
     fn released(
         &self,
         nearest_field: &NearestField,
-        edges: &[Edge],
         is_released: &dyn Fn(&str) -> bool,
     ) -> Option<Model> {
-        let scored = released(nearest_field, edges, is_released)?;
+        let scored = released(nearest_field, is_released)?;
         Some(self.model(nearest_field, scored))
     }
 
@@ -128,24 +124,19 @@ impl Basis<'_> {
     }
 
     /// The trial of each of the edges with a stated condition, released alone.
-    fn edge_by_edge(&self, nearest_field: &NearestField, edges: &[Edge]) -> Vec<Trial> {
-        let names = stated(edges).into_iter();
+    fn edge_by_edge(&self, nearest_field: &NearestField) -> Vec<Trial> {
+        let names = stated(&nearest_field.equations.edges).into_iter();
         let trials = names.filter_map(|name| {
-            let model = self.released(nearest_field, edges, &|other| other == name)?;
+            let model = self.released(nearest_field, &|other| other == name)?;
             Some(self.try_out(nearest_field, Alternative::Edge(name.to_owned()), &model))
         });
         trials.collect()
     }
 
     /// The trials of an edge with a stated condition under each of the other conditions.
-    fn other_conditions(
-        &self,
-        nearest_field: &NearestField,
-        edges: &[Edge],
-        name: &str,
-    ) -> Vec<Trial> {
+    fn other_conditions(&self, nearest_field: &NearestField, name: &str) -> Vec<Trial> {
         let trials = OTHER_CONDITIONS.into_iter().filter_map(|condition| {
-            let scored = with_condition(nearest_field, edges, condition, &|other| other == name)?;
+            let scored = with_condition(nearest_field, condition, &|other| other == name)?;
             let model = self.model(nearest_field, scored);
             let edge = name.to_owned();
             let alternative = Alternative::Condition { edge, condition };
@@ -191,20 +182,18 @@ fn is_stated(edge: &Edge) -> bool {
 /// The regression with some of the edges with stated conditions released; `None` where there are none, or where the data do not determine so much.
 pub fn released(
     nearest_field: &NearestField,
-    edges: &[Edge],
     is_released: &dyn Fn(&str) -> bool,
 ) -> Option<Scored> {
-    with_condition(nearest_field, edges, EdgeCondition::Unknown, is_released)
+    with_condition(nearest_field, EdgeCondition::Unknown, is_released)
 }
 
 /// The same with another condition of these edges; `None` also where they have it already.
 fn with_condition(
     nearest_field: &NearestField,
-    edges: &[Edge],
     condition: EdgeCondition,
     is_released: &dyn Fn(&str) -> bool,
 ) -> Option<Scored> {
-    let mut relaxed = edges.to_vec();
+    let mut relaxed = nearest_field.equations.edges.clone();
     let mut any = false;
     for edge in &mut relaxed {
         if is_stated(edge) && is_released(&edge.segment.name) {

@@ -25,7 +25,6 @@ use nalgebra::{DMatrix, DMatrixView, DVector};
 
 use crate::error::Error;
 use crate::estimation::equations::solve;
-use crate::estimation::input::Edge;
 use crate::estimation::search::NearestField;
 use crate::solve::vector::dot;
 
@@ -47,14 +46,11 @@ pub struct Considered {
 
 impl NearestField<'_> {
     /// The parameters that are considered; must be called before the covariance includes the noise found, because it has to be M⁻¹.
-    pub(in crate::estimation) fn considered(
-        &mut self,
-        edges: &[Edge],
-    ) -> Result<Considered, Error> {
+    pub(in crate::estimation) fn considered(&mut self) -> Result<Considered, Error> {
         let law = self.equations.task.knowledge.uncertain_law();
         let neighbours = law.map_or(Vec::new(), |law| law.neighbours());
         let slopes = self.equations.slopes_between(neighbours, &self.field)?;
-        let (strips, of_edges) = self.edge_strips(edges);
+        let (strips, of_edges) = self.edge_strips();
         let (edges, strips): (Vec<usize>, Vec<_>) = strips.into_iter().unzip();
         let (of_law, all) = (slopes.len(), slopes.len() + strips.len());
         let mut squares = DMatrix::zeros(all, all);

@@ -3,7 +3,6 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::error::Error;
-use crate::estimation::input::Edge;
 use crate::estimation::regression::{Fit, VarianceComponents};
 use crate::estimation::search::{MESH_ERROR_FACTOR, NearestField};
 
@@ -21,11 +20,7 @@ impl NearestField<'_> {
     ///
     /// # Errors
     /// Where the tangent cannot be used to solve systems.
-    pub fn granted(
-        &mut self,
-        edges: &[Edge],
-        mesh_error: Option<&[f64]>,
-    ) -> Result<Vec<Granted>, Error> {
+    pub fn granted(&mut self, mesh_error: Option<&[f64]>) -> Result<Vec<Granted>, Error> {
         let knowledge = self.equations.task.knowledge;
         let stated = knowledge.scale_deviation > 0.0;
         let scale = stated.then(|| Granted {
@@ -37,7 +32,7 @@ impl NearestField<'_> {
             design: DMatrix::from_column_slice(error.len(), 1, error),
             deviation: Some(MESH_ERROR_FACTOR),
         }));
-        let (strips, squares) = self.edge_strips(edges);
+        let (strips, squares) = self.edge_strips();
         if !strips.is_empty() {
             let independent = squares.cholesky().map(|factor| factor.l());
             let strips: Vec<_> = strips.into_iter().map(|(_, strip)| strip).collect();

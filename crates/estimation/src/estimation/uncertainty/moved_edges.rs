@@ -26,15 +26,13 @@ pub type MovedEdge = (MovedPart, DMatrix<f64>);
 
 impl NearestField<'_> {
     /// Each free edge moved alone, all of them together where there are several, and the whole outline where edges have a stated motion.
-    pub(in crate::estimation) fn moved_edges(
-        &mut self,
-        edges: &[Edge],
-    ) -> Result<Vec<MovedEdge>, Error> {
-        let free = edges.iter().filter(|edge| edge.has_strip());
+    pub(in crate::estimation) fn moved_edges(&mut self) -> Result<Vec<MovedEdge>, Error> {
+        let edges = self.equations.edges.iter();
+        let free = edges.filter(|edge| edge.has_strip());
         let mut parts: Vec<MovedPart> = free
             .map(|edge| MovedPart::FreeEdge(edge.segment.name.clone()))
             .collect();
-        let mut strips = self.strips(edges);
+        let mut strips = self.strips();
         let mut all = vec![0.0; self.field.len()];
         for strip in &strips {
             add_scaled(&mut all, 1.0, strip);
@@ -46,21 +44,17 @@ impl NearestField<'_> {
         let designs = self.marker_changes(&strips)?;
         let columns = (0..designs.ncols()).map(|column| designs.columns(column, 1).into_owned());
         let mut moved: Vec<MovedEdge> = parts.into_iter().zip(columns).collect();
-        let grips: Vec<&Edge> = edges.iter().filter(|edge| moves_as_stated(edge)).collect();
-        if !grips.is_empty() {
-            moved.push((MovedPart::Outline, self.moved_outline(&grips, all)?));
+        if self.equations.edges.iter().any(moves_as_stated) {
+            moved.push((MovedPart::Outline, self.moved_outline(all)?));
         }
         Ok(moved)
     }
 
     /// The displacements of the markers per mm by which grips lie farther out, and free edges too, which the forces of their strips represent.
-    fn moved_outline(
-        &mut self,
-        grips: &[&Edge],
-        mut forces: Vec<f64>,
-    ) -> Result<DMatrix<f64>, Error> {
+    fn moved_outline(&mut self, mut forces: Vec<f64>) -> Result<DMatrix<f64>, Error> {
         let mut motion = vec![0.0; self.field.len()];
-        for grip in grips {
+        let edges = self.equations.edges.iter();
+        for grip in edges.filter(|edge| moves_as_stated(edge)) {
             self.move_grip(grip, &mut motion);
         }
         let equations = &mut self.equations;
@@ -107,8 +101,9 @@ impl NearestField<'_> {
     }
 
     /// The forces in N/mm of a strip along each of the free edges.
-    fn strips(&self, edges: &[Edge]) -> Vec<Vec<f64>> {
-        let free = edges.iter().filter(|edge| edge.has_strip());
+    fn strips(&self) -> Vec<Vec<f64>> {
+        let edges = self.equations.edges.iter();
+        let free = edges.filter(|edge| edge.has_strip());
         free.map(|edge| self.strip(&edge.segment, &|_| 1.0))
             .collect()
     }

@@ -84,12 +84,12 @@ impl Fine {
 impl NearestField<'_> {
     /// The difference of a solution on cells half as large; `None` where the mesh is too large to be refined, or the
     /// refined one has no equilibrium.
-    pub fn mesh_difference(&self, edges: &[Edge]) -> Option<MeshDifference> {
+    pub fn mesh_difference(&self) -> Option<MeshDifference> {
         let mesh = self.equations.task.specimen.mesh;
         if mesh.cell_count() > MOST_REFINED_CELLS {
             return None;
         }
-        let fine = self.refined(mesh, edges)?;
+        let fine = self.refined(mesh)?;
         let observations = self.equations.task.observations;
         let nearby = observations.interpolation.multiply(&self.field);
         let positions = observations.positions.iter();
@@ -103,17 +103,17 @@ impl NearestField<'_> {
     }
 
     /// The discretisation error, where [`Self::mesh_difference`] exists; it is computed once.
-    pub fn mesh_error(&self, edges: &[Edge]) -> Option<&MeshError> {
+    pub fn mesh_error(&self) -> Option<&MeshError> {
         let refined = self
             .known_mesh_error
-            .get_or_init(|| self.compute_mesh_error(edges));
+            .get_or_init(|| self.compute_mesh_error());
         refined.as_ref()
     }
 
     /// The discretisation error, computed anew.
-    pub fn compute_mesh_error(&self, edges: &[Edge]) -> Option<MeshError> {
+    pub fn compute_mesh_error(&self) -> Option<MeshError> {
         let mesh = self.equations.task.specimen.mesh;
-        let refined = self.mesh_difference(edges)?;
+        let refined = self.mesh_difference()?;
         let (linear, variances) = (&self.linear, &self.variances);
         let target = self.equations.mesh_target(&refined, linear, variances);
         let change = &self.fit.covariance * target;
@@ -143,14 +143,14 @@ impl NearestField<'_> {
     }
 
     /// The same edges and law on cells half as large.
-    fn refined(&self, mesh: &Mesh, edges: &[Edge]) -> Option<Fine> {
+    fn refined(&self, mesh: &Mesh) -> Option<Fine> {
         let fine = mesh.refined();
         let mut coarse = vec![true; self.field.len()];
         for unknown in self.equations.newton.free() {
             coarse[*unknown] = false;
         }
+        let edges = self.equations.edges.iter();
         let held: Vec<_> = edges
-            .iter()
             .map(|edge| held_unknowns(mesh, &fine, edge, &coarse))
             .collect();
         let mut fixed = vec![false; 2 * fine.nodes.len()];

@@ -24,10 +24,7 @@ const MOST_TRACED_PARTS: f64 = 12.0;
 
 impl NearestField<'_> {
     /// The forces of the strips along the free edges in N/mm, each with the index of its edge, and Σ in mm²; empty where the edges are known.
-    pub(in crate::estimation) fn edge_strips(
-        &self,
-        edges: &[Edge],
-    ) -> (Vec<(usize, Vec<f64>)>, DMatrix<f64>) {
+    pub(in crate::estimation) fn edge_strips(&self) -> (Vec<(usize, Vec<f64>)>, DMatrix<f64>) {
         let knowledge = self.equations.task.knowledge;
         let (gap, common, most) = match knowledge.edge_gap {
             Some(gap) => (gap, 1.0 / 4.0, MOST_PARTS),
@@ -36,7 +33,7 @@ impl NearestField<'_> {
         if gap == 0.0 {
             return (Vec::new(), DMatrix::zeros(0, 0));
         }
-        let indexed = edges.iter().enumerate();
+        let indexed = self.equations.edges.iter().enumerate();
         let free = indexed.filter(|(_, edge)| edge.has_strip());
         let strips = free.flat_map(|(index, edge)| {
             let strips = self.strips_between_points(edge, gap, most).into_iter();
