@@ -111,7 +111,7 @@ fn all_free<'a>(task: &Task<'a>, given: &[Edge]) -> Option<NearestField<'a>> {
         let mut loaded = edges.clone();
         loaded[index].condition = given[index].condition;
         let equations = Equations::new(task, &loaded).ok()?;
-        let scored = equations.score_released(&free).ok()?;
+        let scored = equations.score(&free, false).ok()?;
         let loaded = (&scored.fit, &scored.linear.design, &scored.variances);
         let probability = probability(loaded, &mut free, level);
         edges[index].probability = Some(probability);

@@ -6,17 +6,15 @@ mod outline;
 mod regressed_law;
 mod start;
 mod task;
-mod uncertain_law;
 
 pub use knowledge::{
     EdgeCondition, FORCE_CLASS, Knowledge, MeasuredForce, Physics, Specimen, Unnamed,
 };
 pub use observations::Observations;
 pub use outline::{Segment, name_parts};
-pub use regressed_law::{Neighbours, RegressedLaw};
+pub use regressed_law::{Neighbours, RegressedLaw, UncertainLaw};
 pub use start::{DEGREE, Polynomial};
 pub use task::{Edge, Task, observe, singular_corners};
-pub use uncertain_law::UncertainLaw;
 
 #[cfg(test)]
 pub use outline::segments;

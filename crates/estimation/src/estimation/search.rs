@@ -169,33 +169,18 @@ impl<'a> Equations<'a> {
         (state, variances)
     }
 
-    /// One linearised regression from the field of another search, with its trust in the markers.
+    /// One linearised regression from the field of another search, with its trust in the markers. Edges that these equations release begin with
+    /// the displacements of that field, which is then in equilibrium; with other conditions it must be settled first.
     ///
     /// # Errors
     /// As [`Self::run`].
-    pub fn score(mut self, nearest_field: &NearestField) -> Result<Scored, Error> {
-        let (mut state, variances) = self.nearby(nearest_field);
-        self.settle(&mut state, ON_THE_WAY)?;
-        self.score_at(&state, variances)
-    }
-
-    /// The same for equations that free some of that search's conditions: these edges begin with the displacements of its field, already in
-    /// equilibrium.
-    ///
-    /// # Errors
-    /// As [`Self::run`].
-    pub fn score_released(self, nearest_field: &NearestField) -> Result<Scored, Error> {
-        let (state, variances) = self.nearby(nearest_field);
-        self.score_at(&state, variances)
-    }
-
-    fn score_at(
-        mut self,
-        state: &SearchState,
-        mut variances: VarianceComponents,
-    ) -> Result<Scored, Error> {
-        let linear = self.linearise(state)?;
-        let fit = self.regress(state, false, &linear, &mut variances)?;
+    pub fn score(mut self, nearest_field: &NearestField, settle: bool) -> Result<Scored, Error> {
+        let (mut state, mut variances) = self.nearby(nearest_field);
+        if settle {
+            self.settle(&mut state, ON_THE_WAY)?;
+        }
+        let linear = self.linearise(&state)?;
+        let fit = self.regress(&state, false, &linear, &mut variances)?;
         Ok(Scored {
             linear,
             fit,

@@ -2,8 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::regressed_law::RegressedLaw;
-use super::uncertain_law::UncertainLaw;
+use super::regressed_law::{RegressedLaw, UncertainLaw};
 use crate::error::Diagnostic;
 use crate::estimation::regression::Robust;
 use crate::mesh::Mesh;

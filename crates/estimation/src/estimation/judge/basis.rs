@@ -204,10 +204,8 @@ fn with_condition(
     let search = any
         .then(|| Equations::new(&nearest_field.equations.task, &relaxed).ok())
         .flatten()?;
-    match condition {
-        EdgeCondition::Unknown => search.score_released(nearest_field).ok(),
-        _ => search.score(nearest_field).ok(),
-    }
+    let settle = condition != EdgeCondition::Unknown;
+    search.score(nearest_field, settle).ok()
 }
 
 fn contradicted(together: Option<&Trial>, each: &[Trial], level: f64) -> Option<Contradiction> {
