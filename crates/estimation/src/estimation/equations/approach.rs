@@ -4,6 +4,7 @@
 //! Δu = −K⁻¹ K_B Δu_B, in moves as long as all cells stay admissible.
 
 use crate::error::SolveFault;
+use crate::solve::vector::moved;
 use crate::solve::{Assembly, Newton, Potential};
 
 /// The largest number of moves, and the shortest one.
@@ -25,14 +26,14 @@ pub fn approach(
     for unknown in newton.free() {
         held[*unknown] = false;
     }
-    let mut residual = vec![0.0; field.len()];
     let jump = |field: &[f64]| -> Vec<f64> {
         let pairs = field.iter().zip(wanted).zip(&held);
         pairs
             .map(|((u, wanted), held)| if *held { wanted - u } else { 0.0 })
             .collect()
     };
-    let there: Vec<f64> = field.iter().zip(jump(field)).map(|(u, d)| u + d).collect();
+    let there = moved(field, 1.0, &jump(field));
+    let mut residual = vec![0.0; field.len()];
     if Assembly::residual(potential, &there, &mut residual).is_ok() {
         *field = there;
         return Ok(());
@@ -42,32 +43,38 @@ pub fn approach(
         let inside = newton
             .tangent
             .predict(potential, field, &motion, describe)?;
-        let mut length = 1.0;
-        loop {
-            let moves = motion.iter().zip(&inside);
-            let moved = field
-                .iter()
-                .zip(moves)
-                .map(|(u, (m, i))| u + length * (m + i));
-            let moved: Vec<f64> = moved.collect();
-            match Assembly::residual(potential, &moved, &mut residual) {
-                Ok(_) => {
-                    *field = moved;
-                    break;
-                }
-                Err(fault) if length <= SHORTEST => {
-                    return Err(SolveFault::Inverted {
-                        element: describe(fault.element),
-                    });
-                }
-                Err(_) => length *= 0.5,
-            }
-        }
-        if length == 1.0 {
+        let change = moved(&motion, 1.0, &inside);
+        if advance(potential, field, &change, describe)? == 1.0 {
             return Ok(());
         }
     }
     Err(SolveFault::Singular)
+}
+
+/// Adds the largest share of a change, halved from 1, at which all cells are admissible; returns the share.
+fn advance(
+    potential: &dyn Potential,
+    field: &mut Vec<f64>,
+    change: &[f64],
+    describe: &dyn Fn(usize) -> String,
+) -> Result<f64, SolveFault> {
+    let mut residual = vec![0.0; field.len()];
+    let mut share = 1.0;
+    loop {
+        let next = moved(field, share, change);
+        match Assembly::residual(potential, &next, &mut residual) {
+            Ok(_) => {
+                *field = next;
+                return Ok(share);
+            }
+            Err(fault) if share <= SHORTEST => {
+                return Err(SolveFault::Inverted {
+                    element: describe(fault.element),
+                });
+            }
+            Err(_) => share *= 0.5,
+        }
+    }
 }
 
 #[cfg(test)]
