@@ -78,15 +78,26 @@ pub(super) const NAMED: Layout = Layout {
     ..COLUMNS
 };
 
+/// A table of a program, which contains no standard deviation of the displacement in its unit.
+const EXPORT: Layout = Layout {
+    deviation: &[],
+    ..COLUMNS
+};
+
+/// A table of a program with positions in the image.
+const IN_IMAGE: Layout = Layout {
+    downwards: true,
+    pixels: true,
+    ..EXPORT
+};
+
 const DICE: Layout = Layout {
     name: "DICe",
     positions: [&["coordinate_x"], &["coordinate_y"]],
     displacements: [&["displacement_x"], &["displacement_y"]],
     deviation: &["sigma"],
     lost: &["sigma"],
-    downwards: true,
-    pixels: true,
-    ..COLUMNS
+    ..IN_IMAGE
 };
 
 const DICE_STEREO: Layout = Layout {
@@ -94,7 +105,6 @@ const DICE_STEREO: Layout = Layout {
     positions: [&["model_coordinates_x"], &["model_coordinates_y"]],
     displacements: [&["model_displacement_x"], &["model_displacement_y"]],
     // SIGMA is in pixels, not in the calibration's unit.
-    deviation: &[],
     lost: &["sigma"],
     // The same in pixels of one camera.
     harmless: &[
@@ -103,44 +113,34 @@ const DICE_STEREO: Layout = Layout {
         "displacement_x",
         "displacement_y",
     ],
-    ..COLUMNS
+    ..EXPORT
 };
 
 const MUDIC: Layout = Layout {
     name: "muDIC",
-    deviation: &[],
-    downwards: true,
     deformed: true,
-    pixels: true,
-    ..COLUMNS
+    ..IN_IMAGE
 };
 
 const PYALDIC: Layout = Layout {
     name: "pyALDIC",
     displacements: [&["disp_u"], &["disp_v"]],
-    deviation: &[],
     harmless: &["disp_magnitude"],
-    downwards: true,
-    pixels: true,
-    ..COLUMNS
+    ..IN_IMAGE
 };
 
 const PYVALE: Layout = Layout {
     name: "pyvale",
     positions: [&["subset_x"], &["subset_y"]],
     displacements: [&["displacement_u"], &["displacement_v"]],
-    deviation: &[],
     converged: &["converged"],
     harmless: &["displacement_mag", "cost", "ftol", "xtol", "num_iterations"],
-    downwards: true,
-    pixels: true,
-    ..COLUMNS
+    ..IN_IMAGE
 };
 
 const OPENCORR: Layout = Layout {
     name: "OpenCorr",
     displacements: [&["u"], &["v"]],
-    deviation: &[],
     lost: &["zncc"],
     // The initial values of the search, and how it ended.
     harmless: &[
@@ -152,35 +152,29 @@ const OPENCORR: Layout = Layout {
         "subset_rx",
         "subset_ry",
     ],
-    downwards: true,
-    pixels: true,
-    ..COLUMNS
+    ..IN_IMAGE
 };
 
 const VIC_3D: Layout = Layout {
     name: "VIC-3D",
     positions: [&["=X"], &["=Y"]],
     displacements: [&["=U"], &["=V"]],
-    // It is in pixels, not in the calibration's unit.
-    deviation: &[],
     out_of_plane: [&["=Z"], &["=W"]],
+    // It is in pixels, not in the calibration's unit.
     lost: &["sigma"],
     harmless: &[
         "=x", "=y", "=u", "=v", "sigma_x", "sigma_y", "sigma_z", "index",
     ],
-    ..COLUMNS
+    ..EXPORT
 };
 
 const VIC_2D: Layout = Layout {
     name: "VIC-2D",
     positions: [&["=x"], &["=y"]],
     displacements: [&["=u"], &["=v"]],
-    deviation: &[],
     lost: &["sigma"],
     harmless: &["index"],
-    downwards: true,
-    pixels: true,
-    ..COLUMNS
+    ..IN_IMAGE
 };
 
 const MATCHID: Layout = Layout {
@@ -193,7 +187,6 @@ const MATCHID: Layout = Layout {
         &["disp.horizontal_displacement_u", "u"],
         &["disp.vertical_displacement_v", "v"],
     ],
-    deviation: &[],
     out_of_plane: [&["coor.z", "z"], &["disp.out_of_plane:_w", "w"]],
     harmless: &[
         "coordinates.image_x",
@@ -203,27 +196,25 @@ const MATCHID: Layout = Layout {
         "deltathick:_dthick",
     ],
     downwards: true,
-    ..COLUMNS
+    ..EXPORT
 };
 
 const GOM_NODEMAP: Layout = Layout {
     name: "GOM, nodemap",
     positions: [&["x_undef"], &["y_undef"]],
     displacements: [&["u"], &["v"]],
-    deviation: &[],
     out_of_plane: [&["z_undef"], LIFT],
     harmless: &["epsx", "epsy", "epsxy", "epseqv"],
-    ..COLUMNS
+    ..EXPORT
 };
 
 const GOM_CORRELATE: Layout = Layout {
     name: "GOM Correlate",
     displacements: [&["displacement_x"], &["displacement_y"]],
-    deviation: &[],
     out_of_plane: [HEIGHT, &["displacement_z"]],
     harmless: &["epsilon_x", "epsilon_y", "epsilon_xy"],
     deformed: true,
-    ..COLUMNS
+    ..EXPORT
 };
 
 /// The layout that the names of the columns show.

@@ -32,6 +32,11 @@ fn marker(number: usize, position: [f64; 2], displacement: [f64; 2]) -> Marker {
     }
 }
 
+/// Compares the markers of the first frame.
+fn first_frame_is(measured: &MarkerFiles, expected: &[Marker]) {
+    near(&measured.series.frames[0].markers, expected);
+}
+
 fn near(markers: &[Marker], expected: &[Marker]) {
     assert_eq!(markers.len(), expected.len(), "{markers:?}");
     for (marker, expected) in markers.iter().zip(expected) {
@@ -95,8 +100,8 @@ fn dice_is_read_in_pixels_and_its_y_axis_turned_up() {
         standard_deviation: Some(deviation),
         ..marker
     };
-    near(
-        &measured.series.frames[0].markers,
+    first_frame_is(
+        &measured,
         &[
             with(0.01, marker(0, [30.5, -485.5], [-0.031436, 0.394485])),
             with(0.015, marker(2, [30.5, -450.5], [-0.036928, 0.42921])),
@@ -110,18 +115,12 @@ fn dice_is_read_in_pixels_and_its_y_axis_turned_up() {
 fn early_versions_of_dice_have_match_and_stereo_has_its_own_columns() {
     let early = "COORDINATE_X,COORDINATE_Y,DISPLACEMENT_X,DISPLACEMENT_Y,GAMMA,MATCH\n1,2,3,4,0,0\n2,2,3,4,0,-1\n";
     let measured = read_texts(&[("a.txt", early)], &unit(1.0)).unwrap();
-    near(
-        &measured.series.frames[0].markers,
-        &[marker(0, [1.0, -2.0], [3.0, -4.0])],
-    );
+    first_frame_is(&measured, &[marker(0, [1.0, -2.0], [3.0, -4.0])]);
     let stereo = "COORDINATE_X,COORDINATE_Y,MODEL_COORDINATES_X,MODEL_COORDINATES_Y,DISPLACEMENT_X,DISPLACEMENT_Y,\
                   MODEL_DISPLACEMENT_X,MODEL_DISPLACEMENT_Y,SIGMA\n61,971,5,7,1,1,0.5,0.25,0.02\n";
     let measured = read_texts(&[("a.txt", stereo)], &unit(1.0)).unwrap();
     assert_eq!(measured.understood.layout, "DICe, stereo");
-    near(
-        &measured.series.frames[0].markers,
-        &[marker(0, [5.0, 7.0], [0.5, 0.25])],
-    );
+    first_frame_is(&measured, &[marker(0, [5.0, 7.0], [0.5, 0.25])]);
 }
 
 #[test]
@@ -142,10 +141,7 @@ fn points_that_vic_and_dice_did_not_find_are_lost() {
         let text = format!("{head}\n{rows}");
         let measured = read_texts(&[("a.csv", &text)], &unit(1.0)).unwrap();
         assert_eq!(measured.understood.layout, layout);
-        near(
-            &measured.series.frames[0].markers,
-            &[marker(0, [1.0, 2.0], [3.0, 4.0])],
-        );
+        first_frame_is(&measured, &[marker(0, [1.0, 2.0], [3.0, 4.0])]);
         assert_eq!(measured.series.lost, [[2.0, 2.0]]);
     }
 }
@@ -196,10 +192,7 @@ fn mudic_gives_places_in_the_frame() {
                 0,110.0,52.0,10.0,2.0,0,0,0,0,0,0\n1,130.0,52.0,nan,2.0,0,0,0,0,0,0\n";
     let measured = read_texts(&[("frame_3.csv", text)], &unit(0.1)).unwrap();
     assert_eq!(measured.understood.layout, "muDIC");
-    near(
-        &measured.series.frames[0].markers,
-        &[marker(0, [10.0, -5.0], [1.0, -0.2])],
-    );
+    first_frame_is(&measured, &[marker(0, [10.0, -5.0], [1.0, -0.2])]);
 }
 
 #[test]
@@ -212,8 +205,8 @@ fn ncorr_keeps_matrices() {
     let files = [("frame_2_v.csv", v), ("frame_2_u.csv", u)];
     let measured = read_texts(&files, &reading).unwrap();
     assert_eq!(measured.understood.layout, "Ncorr");
-    near(
-        &measured.series.frames[0].markers,
+    first_frame_is(
+        &measured,
         &[
             marker(0, [0.5, 0.0], [2.0, 2.0]),
             marker(1, [1.0, 0.0], [4.0, 4.0]),
@@ -333,8 +326,8 @@ fn columns_are_ignored_on_request_and_harmless_ones_always() {
 fn a_given_unit_corrects_a_head_that_names_one_unit_throughout() {
     let text = "x [mm],y [mm],ux [mm],uy [mm]\n0.01,0.02,0.001,0\n0.03,0.02,0.001,0\n";
     let measured = read_texts(&[("a.csv", text)], &unit(1000.0)).unwrap();
-    near(
-        &measured.series.frames[0].markers,
+    first_frame_is(
+        &measured,
         &[
             marker(0, [10.0, 20.0], [1.0, 0.0]),
             marker(1, [30.0, 20.0], [1.0, 0.0]),
@@ -358,8 +351,8 @@ fn a_given_unit_corrects_a_head_that_names_one_unit_throughout() {
 fn duplicate_rows_count_once_and_lost_markers_keep_their_positions() {
     let text = "x [mm],y [mm],ux [mm],uy [mm]\n0,0,1,2\n0,0,1,2\n0,0,1,2.5\n9,0,1,2\n9,9,,\n";
     let measured = read_texts(&[("a.csv", text)], &ReadSettings::default()).unwrap();
-    near(
-        &measured.series.frames[0].markers,
+    first_frame_is(
+        &measured,
         &[
             marker(0, [0.0, 0.0], [1.0, 2.0]),
             marker(0, [0.0, 0.0], [1.0, 2.5]),
