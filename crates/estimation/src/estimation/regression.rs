@@ -1,4 +1,4 @@
-//! Least squares with penalties on roughness, the weights of markers that are far off, and the rows of the markers.
+//! Least squares with penalties on roughness, the weights of markers with large residuals, and the rows of the markers.
 
 mod marker_rows;
 mod penalised;

@@ -91,8 +91,8 @@ fn multipliers_are_derivatives_of_the_misfit_by_forces() {
             .unwrap()
             .remove(0);
         let square = |marker: &Marker| {
-            let there = mesh.displacement_at(&state.displacement, marker.position);
-            let [x, y] = [0, 1].map(|axis| there[axis] - marker.displacement[axis]);
+            let computed = mesh.displacement_at(&state.displacement, marker.position);
+            let [x, y] = [0, 1].map(|axis| computed[axis] - marker.displacement[axis]);
             0.5 * (x * x + y * y)
         };
         markers.iter().map(square).sum::<f64>()
@@ -158,7 +158,7 @@ fn wrong_input_is_refused() {
 
 /// A strip whose sides are not named: the long ones are free, the short ones are pulled.
 #[test]
-fn the_data_tell_which_edges_are_free() {
+fn the_data_decide_which_edges_are_free() {
     let (truth, mesh) = (Truth::new(), estimate_mesh());
     for noise in [0.02, 0.3] {
         let markers = truth.markers(noise, 3);

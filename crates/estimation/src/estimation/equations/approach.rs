@@ -32,10 +32,10 @@ pub fn approach(
             .map(|((u, wanted), held)| if *held { wanted - u } else { 0.0 })
             .collect()
     };
-    let there = moved(field, 1.0, &jump(field));
+    let imposed = moved(field, 1.0, &jump(field));
     let mut residual = vec![0.0; field.len()];
-    if Assembly::residual(potential, &there, &mut residual).is_ok() {
-        *field = there;
+    if Assembly::residual(potential, &imposed, &mut residual).is_ok() {
+        *field = imposed;
         return Ok(());
     }
     for _ in 0..MOST_MOVES {

@@ -33,7 +33,7 @@ pub struct Knowledge {
     pub forces_are_checks: bool,
     /// Standard deviation of each component of the displacement of markers without one of their own, in mm; `None` where it is to be estimated.
     pub noise: Option<f64>,
-    /// How markers that are far off are weighted.
+    /// How markers with large residuals are weighted.
     pub robust: Robust,
     /// Whether an estimate without robust weights ends where gross errors make up the noise of the markers. Its result then has the markers'
     /// residuals only; robust weights are needed.

@@ -133,9 +133,9 @@ impl Observations {
 
     /// d − H u, two numbers per marker.
     pub fn residual(&self, field: &[f64]) -> DVector<f64> {
-        let there = self.interpolation.multiply(field);
+        let computed = self.interpolation.multiply(field);
         let data = self.displacements.iter().flatten();
-        DVector::from_iterator(there.len(), data.zip(there).map(|(d, u)| d - u))
+        DVector::from_iterator(computed.len(), data.zip(computed).map(|(d, u)| d - u))
     }
 
     /// The polynomial of a degree through the markers that gross errors do not affect.

@@ -107,7 +107,7 @@ impl Polynomial {
             .collect()
     }
 
-    /// 1 for markers near the polynomial, 0 for those that are far off in terms of the spread of all.
+    /// 1 for markers near the polynomial, 0 for those whose distance from it is more than five robust deviations of all distances.
     pub fn trust(&self, points: &Points) -> Vec<f64> {
         const FAR: f64 = 5.0;
         let distances = self.distances(points);

@@ -36,7 +36,7 @@ pub struct FieldEstimate {
     pub markers: Vec<Option<MarkerEstimate>>,
     /// Standard deviation of each component of a marker of mean weight in mm.
     pub noise: f64,
-    /// The weights of markers that are far off.
+    /// The weights of markers with large residuals.
     pub robust: Robust,
     /// Whether the noise was given; otherwise it is estimated from the residuals of the markers.
     pub known_noise: bool,

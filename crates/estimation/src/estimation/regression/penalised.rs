@@ -52,7 +52,7 @@ pub struct Regression<'a> {
     pub force_rows: (&'a DMatrix<f64>, &'a DVector<f64>),
     /// The priors.
     pub priors: Vec<Roughness>,
-    /// How markers that are far off are weighted.
+    /// How markers with large residuals are weighted.
     pub robust: Robust,
     /// Whether the variances are fixed.
     pub settled: bool,

@@ -1,4 +1,4 @@
-//! Weights of markers that are far off, and the level of the noise.
+//! Weights of markers with large residuals, and the level of the noise.
 //!
 //! ```text
 //! dₘ = √(wₘ (rx² + ry²))/s                     distance of marker m in units of the noise s
@@ -21,7 +21,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::statistics::robust_deviation;
 
-/// How markers that are far off are weighted.
+/// How markers with large residuals are weighted.
 #[derive(Clone, Copy, Debug, Default, Deserialize, Eq, PartialEq, Serialize)]
 pub enum Robust {
     /// The same weight as all others.

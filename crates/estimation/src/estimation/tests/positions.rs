@@ -14,8 +14,8 @@ fn strip(size: [f64; 2], across: usize) -> Mesh {
     Shape::StripWithHole { size, radius }.mesh(across, CellShape::Quad9)
 }
 
-/// From the window, which lies around the hole, to the whole strip.
-fn there(position: [f64; 2]) -> [f64; 2] {
+/// A position of the window around the hole in the coordinates of the complete strip.
+fn in_strip(position: [f64; 2]) -> [f64; 2] {
     [position[0] + 0.5 * (WHOLE[0] - WINDOW[0]), position[1]]
 }
 
@@ -34,7 +34,7 @@ fn positions(window: &Mesh) -> Vec<[f64; 2]> {
 fn few_stresses_of_a_window_are_twice_as_far_off_as_stated() {
     let (complete, window) = (Truth::on(strip(WHOLE, 24)), strip(WINDOW, 12));
     let exact = |cell: usize| -> [f64; 4] {
-        complete.stress(there(window.position(cell, window.shape(cell).centre())))
+        complete.stress(in_strip(window.position(cell, window.shape(cell).centre())))
     };
     let knowledge = Knowledge {
         unnamed: Unnamed::Loaded,
@@ -45,7 +45,7 @@ fn few_stresses_of_a_window_are_twice_as_far_off_as_stated() {
     for seed in 0..SEEDS {
         let markers = noisy(
             &positions,
-            &|position| complete.at(there(position)),
+            &|position| complete.at(in_strip(position)),
             NOISE,
             seed,
         );

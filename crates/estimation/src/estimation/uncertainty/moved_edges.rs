@@ -173,8 +173,9 @@ mod tests {
         let [length, width] = SIZE;
         let mesh = rectangle([0.0, bottom], [length, width - top]);
         let markers = truth.markers(noise, 5).into_iter();
-        let amid = |marker: &Marker| marker.position[1] > 2.0 && marker.position[1] < width - 2.0;
-        let markers: Vec<Marker> = markers.filter(amid).collect();
+        let is_inner =
+            |marker: &Marker| marker.position[1] > 2.0 && marker.position[1] < width - 2.0;
+        let markers: Vec<Marker> = markers.filter(is_inner).collect();
         let knowledge = with_grips(EdgeCondition::Unknown);
         let estimated = estimate_on(&mesh, &markers, &knowledge);
         let moved =
@@ -190,7 +191,7 @@ mod tests {
     }
 
     #[test]
-    fn the_verdict_tells_how_far_free_edges_lie_from_those_of_the_mesh() {
+    fn the_verdict_gives_the_distances_of_free_edges_from_those_of_the_mesh() {
         let truth = Truth::new();
         // One linearised step about a field with wrong edges has an error below a third.
         let near = |distance: f64, off: f64| (distance / off - 1.0).abs() < 0.35;
@@ -220,12 +221,12 @@ mod tests {
         let [length, width] = SIZE;
         for off in [1.0, -1.0] {
             let mesh = rectangle([off; 2], [length - off, width - off]);
-            let amid = |marker: &Marker| {
+            let is_inner = |marker: &Marker| {
                 let inside = |axis: usize| (1.0..SIZE[axis] - 1.0).contains(&marker.position[axis]);
                 inside(0) && inside(1)
             };
             let markers = truth.markers(0.01, 5).into_iter();
-            let markers: Vec<Marker> = markers.filter(amid).collect();
+            let markers: Vec<Marker> = markers.filter(is_inner).collect();
             let knowledge = with_grips(EdgeCondition::Rigid);
             let verdict = estimate_on(&mesh, &markers, &knowledge).verdict;
             assert_eq!(verdict.answer, Answer::NotExplained);

@@ -118,8 +118,8 @@ impl NearestField<'_> {
         let target = self.equations.mesh_target(&refined, linear, variances);
         let change = &self.fit.covariance * target;
         let fine = &refined.fine;
-        let there = fine.mesh.displacement_on(&fine.displacement, mesh);
-        let difference = difference(&there, &self.field);
+        let fine_field = fine.mesh.displacement_on(&fine.displacement, mesh);
+        let difference = difference(&fine_field, &self.field);
         let columns = || self.linear.sensitivities.iter().zip(change.iter());
         let adapted: Vec<f64> = (0..difference.len())
             .map(|row| columns().map(|(column, change)| column[row] * change).sum())
@@ -204,11 +204,11 @@ impl NearestField<'_> {
         let holds: Vec<&Hold> = owned.iter().collect();
         let shares = reaction_shares(&fine.mesh, &holds).into_iter().zip(bodies);
         let difference = |(shares, body): ([Vec<Share>; 2], &Body)| {
-            let there = Body {
+            let fine_body = Body {
                 shares,
                 ..body.clone()
             };
-            let (before, after) = (body.force(&reactions), there.force(&fine.residual));
+            let (before, after) = (body.force(&reactions), fine_body.force(&fine.residual));
             [0, 1].map(|axis| after[axis] - before[axis])
         };
         shares.map(difference).collect()

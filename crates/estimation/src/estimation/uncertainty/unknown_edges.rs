@@ -76,12 +76,12 @@ mod tests {
     /// The estimate from markers at least the gap away from the free edges.
     fn estimated(truth: &Truth, mesh: &Mesh, gap: Option<f64>, seed: u64) -> FieldEstimate {
         let markers = truth.markers(0.3, seed).into_iter();
-        let amid = |marker: &Marker| (GAP..SIZE[1] - GAP).contains(&marker.position[1]);
+        let is_inner = |marker: &Marker| (GAP..SIZE[1] - GAP).contains(&marker.position[1]);
         let knowledge = Knowledge {
             edge_gap: gap,
             ..with_grips(EdgeCondition::Rigid)
         };
-        let markers: Vec<Marker> = markers.filter(amid).collect();
+        let markers: Vec<Marker> = markers.filter(is_inner).collect();
         estimate_on(mesh, &markers, &knowledge)
     }
 

@@ -187,7 +187,7 @@ fn tables_that_only_look_like_those_of_a_program_are_read_as_they_are() {
 }
 
 #[test]
-fn mudic_gives_places_in_the_frame() {
+fn mudic_gives_positions_in_the_frame() {
     let text = "id,x,y,ux,uy,true_strain_xx,true_strain_yy,true_strain_xy,eng_strain_xx,eng_strain_yy,eng_strain_xy\n\
                 0,110.0,52.0,10.0,2.0,0,0,0,0,0,0\n1,130.0,52.0,nan,2.0,0,0,0,0,0,0\n";
     let measured = read_texts(&[("frame_3.csv", text)], &unit(0.1)).unwrap();

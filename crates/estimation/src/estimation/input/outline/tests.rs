@@ -54,11 +54,11 @@ fn a_hole_is_one_closed_segment_without_corners() {
 fn groups_that_cannot_be_edges_are_refused() {
     let mut mesh = Mesh::plate([3.0, 2.0], [3, 2], CellShape::Quad4);
     mesh.name_nodes("inner", &[4, 5].into());
-    let told = |groups: &[&str]| segments(&mesh, groups).unwrap_err().to_string();
-    assert!(told(&["lef"]).contains("no group `lef`"));
+    let message = |groups: &[&str]| segments(&mesh, groups).unwrap_err().to_string();
+    assert!(message(&["lef"]).contains("no group `lef`"));
     for condition in [EdgeCondition::Free, EdgeCondition::Unknown] {
-        let told = parts(&mesh, &[("inner".into(), condition)]).unwrap_err();
-        assert!(told.to_string().contains("contains no edge"));
+        let message = parts(&mesh, &[("inner".into(), condition)]).unwrap_err();
+        assert!(message.to_string().contains("contains no edge"));
     }
 }
 
