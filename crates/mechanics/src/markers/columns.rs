@@ -160,6 +160,25 @@ pub fn length(
     }
 }
 
+/// The columns `x` and `y` of a table of positions, and the one of numbers that it may have; any other column is refused.
+pub(super) fn of_positions(
+    table: &Table,
+    unit: Option<f64>,
+    numbers: Names,
+    ignored: &[String],
+) -> Result<([Length; 2], Option<usize>), Error> {
+    let units = Units {
+        given: unit,
+        ..Units::default()
+    };
+    let coordinate = |names: Names| length(table, required(table, names, ASSIGN)?, units);
+    let [x, y] = [coordinate(&["x"])?, coordinate(&["y"])?];
+    let number = plain(table, numbers);
+    let used: Vec<usize> = [x.0, y.0].into_iter().chain(number).collect();
+    check_all(table, &used, &["x", "y", first_name(numbers)], ignored)?;
+    Ok(([x, y], number))
+}
+
 /// A remark where a given unit corrects the head of a file.
 pub fn correction(table: &Table, head: Option<&str>, given: Option<f64>) -> Option<Diagnostic> {
     let (head, given) = (head?, given?);

@@ -5,7 +5,7 @@
 use std::collections::HashMap;
 use std::path::Path;
 
-use super::columns::{self, ASSIGN, Names, Units, length, plain, required};
+use super::columns;
 use super::rows::{FileRows, ReadSettings, Row};
 use super::table::NAME;
 use super::understood::Understood;
@@ -84,15 +84,9 @@ fn by_number(rest: &[Point], moved: &[Point], table: &Table) -> Result<Vec<Point
 fn points(path: &Path, settings: &ReadSettings) -> Result<(Vec<Point>, Table), Error> {
     let mut table = Table::read_as(path, settings.encoding, Table::HINT)?;
     table.name_by_remark();
-    let units = Units {
-        given: settings.unit,
-        ..Units::default()
-    };
-    let coordinate = |names: Names| length(&table, required(&table, names, ASSIGN)?, units);
-    let [x, y] = [coordinate(&["x"])?, coordinate(&["y"])?];
-    let name = plain(&table, NAME);
-    let read: Vec<usize> = [x.0, y.0].into_iter().chain(name).collect();
-    columns::check_all(&table, &read, &["x", "y", "id"], &settings.ignored_columns)?;
+    let ignored = &settings.ignored_columns;
+    let ([x, y], name) = columns::of_positions(&table, settings.unit, NAME, ignored)?;
+    let read = [x.0, y.0].into_iter().chain(name);
     table.check_numbers_or_holes(
         read,
         "give positions as numbers x, y, and a number id where points have one",

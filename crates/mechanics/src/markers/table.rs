@@ -45,15 +45,8 @@ pub fn read(path: &Path, reading: &ReadSettings) -> Result<FileRows, Error> {
 /// [`Error::Input`] with file, line and reason.
 pub fn read_lines(path: &Path, unit: Option<f64>) -> Result<Vec<Vec<[f64; 2]>>, Error> {
     let table = Table::read(path, Table::HINT)?;
-    let units = Units {
-        given: unit,
-        ..Units::default()
-    };
-    let coordinate = |names: Names| length(&table, required(&table, names, ASSIGN)?, units);
-    let [x, y] = [coordinate(&["x"])?, coordinate(&["y"])?];
-    let number = plain(&table, &["line"]);
-    let read: Vec<usize> = [x.0, y.0].into_iter().chain(number).collect();
-    columns::check_all(&table, &read, &["x", "y", "line"], &[])?;
+    let ([x, y], number) = columns::of_positions(&table, unit, &["line"], &[])?;
+    let read = [x.0, y.0].into_iter().chain(number);
     table.check_numbers(read, "give an outline as numbers x, y only")?;
     let mut lines: Vec<(f64, Vec<[f64; 2]>)> = Vec::new();
     for (row, _) in &table.rows {
