@@ -91,10 +91,7 @@ impl<'a> Equations<'a> {
             .at(&vec![0.0; motion.parameters()])
             .held(energy.unknowns());
         if !held.iter().any(|held| *held) {
-            return Err(Error::input(
-                "all edges are free, so the specimen is not loaded",
-                "state which edges are held, or leave their conditions open",
-            ));
+            return Err(unloaded());
         }
         let weighted = task.knowledge.physics == Physics::Weighted;
         let forces = vec![0.0; energy.unknowns()];
@@ -333,6 +330,14 @@ impl<'a> Equations<'a> {
         }
         Ok(())
     }
+}
+
+/// The refusal of edges none of which is held.
+pub fn unloaded() -> Error {
+    Error::input(
+        "all edges are free, so the specimen is not loaded",
+        "state which edges are held, or leave their conditions open",
+    )
 }
 
 /// A fault of the search as an error.

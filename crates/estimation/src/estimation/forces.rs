@@ -55,11 +55,8 @@ impl NearestField<'_> {
             });
             let division = self.equations.bodies[index].division_error(&reactions, axis);
             let by_considered = considered.get(index).map_or(0.0, |all| all[axis]);
-            let error = self
-                .error(&row)
-                .hypot(mesh)
-                .hypot(division)
-                .hypot(by_considered);
+            let others = [mesh, division, by_considered];
+            let error = others.into_iter().fold(self.error(&row), f64::hypot);
             Ok(Estimate::new(force, error, reach))
         };
         let bodies = self.equations.bodies.iter().zip(self.by_body(along)?);

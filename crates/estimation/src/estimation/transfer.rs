@@ -11,7 +11,7 @@
 use std::collections::BTreeSet;
 
 use super::edges::{Body, bodies};
-use super::equations::{approach, solve};
+use super::equations::{approach, solve, unloaded};
 use super::input::{Edge, EdgeCondition, Knowledge, Specimen};
 use super::outcome::{EdgeForce, FieldEstimate, MarkerEstimate, StressEstimate};
 use crate::error::{Error, SolveFault};
@@ -55,10 +55,7 @@ pub fn transfer(
     let start = given.displacement_on(displacement, mesh);
     let imposed = imposed(mesh, &edges, &start);
     if imposed.iter().all(Option::is_none) {
-        return Err(Error::input(
-            "all edges are free, so the specimen is not loaded",
-            "state which edges are held, or leave their conditions open",
-        ));
+        return Err(unloaded());
     }
     let energy = SheetEnergy::of_mesh(specimen.laws.clone(), mesh, specimen.thickness);
     let held: Vec<bool> = imposed.iter().map(Option::is_some).collect();
