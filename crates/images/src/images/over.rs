@@ -6,11 +6,10 @@ use super::gradient::Reference;
 use super::grey::GreyImage;
 use super::grid::Follower;
 use super::spline::Spline;
-use super::state::State;
 use super::subset::Match;
 use super::track::Tracker;
 
-/// The pixel at a place in an image.
+/// The pixel at a position in an image.
 fn pixel_at([x, y]: [f64; 2], size: [usize; 2]) -> Option<[usize; 2]> {
     let [right, bottom] = size.map(|length| length as f64 - 1.0);
     let inside = x >= 0.0 && y >= 0.0 && x < right && y < bottom;
@@ -18,13 +17,13 @@ fn pixel_at([x, y]: [f64; 2], size: [usize; 2]) -> Option<[usize; 2]> {
 }
 
 impl Tracker {
-    /// Points that the first image does not lead to, over the image before; where the first image's pattern is found from there, it remains
-    /// the reference, and else the covariances of both steps add up.
+    /// Finds the points that were not found from the first image, by following them from the image before. Where the first image's pattern
+    /// is then found after all, the match is with the first image; otherwise the covariances of both steps add up.
     pub(super) fn over_image_before(
         &self,
         image: &GreyImage,
         spline: &Spline,
-        states: &mut [Option<State>],
+        found: &mut [Option<Match>],
     ) {
         let Some((last, before)) = &self.before else {
             return;
@@ -34,13 +33,13 @@ impl Tracker {
             let position = before[point].as_ref()?.position(self.grid.points[point]);
             pixel_at(position, size)
         };
-        let lost: Vec<usize> = (0..states.len())
-            .filter(|point| states[*point].is_none() && before[*point].is_some())
+        let lost: Vec<usize> = (0..found.len())
+            .filter(|point| found[*point].is_none() && before[*point].is_some())
             .collect();
         if lost.is_empty() {
             return;
         }
-        let centres: Vec<Option<[usize; 2]>> = (0..states.len()).map(centre).collect();
+        let centres: Vec<Option<[usize; 2]>> = (0..found.len()).map(centre).collect();
         let usable = vec![true; size[0] * size[1]];
         let reference = Reference::new(last.clone(), usable, &self.noise);
         let follower = Follower {
@@ -48,35 +47,31 @@ impl Tracker {
             centres: &centres,
             ..self.follower()
         };
-        let mut matches: Vec<Option<Match>> = vec![None; states.len()];
-        // What is known of the step of the others leads to the lost ones.
-        for point in 0..states.len() {
-            if let (Some(now), Some(then), Some(_)) =
-                (&states[point], &before[point], centres[point])
-            {
-                matches[point] = now.since(then);
-            }
-        }
-        let mut attempts = vec![0; matches.len()];
-        if matches.iter().all(Option::is_none) {
-            self.seed(&follower, (image, spline), &mut matches, &mut attempts);
+        // The steps of the points that were found lead to those of their lost neighbours.
+        let known_step = |point: usize| {
+            centres[point]?;
+            found[point]?.since(before[point].as_ref()?)
+        };
+        let mut steps: Vec<Option<Match>> = (0..found.len()).map(known_step).collect();
+        let mut attempts = vec![0; steps.len()];
+        if steps.iter().all(Option::is_none) {
+            self.seed(&follower, (image, spline), &mut steps, &mut attempts);
         } else {
-            follower.spread(spline, &mut matches, &mut attempts);
+            follower.spread(spline, &mut steps, &mut attempts);
         }
         let direct = self.follower();
         let solved = lost.par_iter().filter_map(|&point| {
-            let step = matches[point]?;
-            let state = before[point].as_ref()?.followed_by(
-                &step,
-                self.grid.points[point],
-                centres[point]?,
-            );
-            let again = direct.find(point, spline, state.warp);
-            Some((point, again.map_or(state, |one| State::of(&one))))
+            let (point_at_rest, centre) = (self.grid.points[point], centres[point]?);
+            let indirect =
+                before[point]
+                    .as_ref()?
+                    .followed_by(&steps[point]?, point_at_rest, centre);
+            let again = direct.find(point, spline, indirect.warp);
+            Some((point, again.unwrap_or(indirect)))
         });
-        let solved: Vec<(usize, State)> = solved.collect();
-        solved
-            .into_iter()
-            .for_each(|(point, state)| states[point] = Some(state));
+        let solved: Vec<(usize, Match)> = solved.collect();
+        for (point, solution) in solved {
+            found[point] = Some(solution);
+        }
     }
 }

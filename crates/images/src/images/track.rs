@@ -14,7 +14,7 @@ use super::region::Region;
 use super::seed::Pyramid;
 use super::speckle::{PatchLayout, half_width};
 use super::spline::Spline;
-use super::state::{State, Tracked};
+use super::state::Tracked;
 use super::subset::{Match, Subset};
 use super::warp::Order;
 use crate::error::{Diagnostic, Error};
@@ -55,7 +55,8 @@ pub struct Tracker {
     pub(super) white: f32,
     pub(super) dead: Vec<usize>,
     pub(super) spacing: usize,
-    pub(super) before: Option<(GreyImage, Vec<Option<State>>)>,
+    /// The image before, and where each point was last found.
+    pub(super) before: Option<(GreyImage, Vec<Option<Match>>)>,
     pub(super) warnings: Vec<Diagnostic>,
     pub(super) patch_layout: OnceLock<PatchLayout>,
 }
@@ -182,36 +183,31 @@ impl Tracker {
         check_size(&self.reference.image, image)?;
         let image = self.repaired(image);
         let spline = Spline::new(&image);
-        let is_first = self.before.is_none();
         let mut matches = self.direct(&image, &spline);
-        if is_first {
+        if self.before.is_none() {
             self.learn_noise(&spline, &mut matches);
         }
         self.follower().drop_outliers(&mut matches);
-        let mut states: Vec<Option<State>> = matches
-            .iter()
-            .map(|one| one.as_ref().map(State::of))
-            .collect();
-        self.over_image_before(&image, &spline, &mut states);
-        if states.iter().all(Option::is_none) {
+        self.over_image_before(&image, &spline, &mut matches);
+        if matches.iter().all(Option::is_none) {
             let message = "no point of the first image is found again";
             let hint = "give the images between them, or check that the series shows one specimen; the pattern must stay the same";
             return Err(Error::input(message, hint));
         }
-        let tracked = states
+        let mut tracked: Vec<Option<Tracked>> = matches
             .iter()
             .zip(&self.grid.points)
-            .map(|(state, point)| Some(state.as_ref()?.tracked(*point)));
-        let mut tracked: Vec<Option<Tracked>> = tracked.collect();
+            .map(|(found, point)| Some(found.as_ref()?.tracked(*point)))
+            .collect();
         if self.order == Order::Affine {
             add_curvature(&self.grid, self.spacing, self.half, &mut tracked);
         }
-        let kept = self.before.take().map(|(_, states)| states);
-        let states = states
-            .into_iter()
-            .enumerate()
-            .map(|(point, state)| state.or_else(|| kept.as_ref().and_then(|kept| kept[point])));
-        self.before = Some((image, states.collect()));
+        if let Some((_, before)) = self.before.take() {
+            for (found, last_found) in matches.iter_mut().zip(before) {
+                *found = found.or(last_found);
+            }
+        }
+        self.before = Some((image, matches));
         Ok(tracked)
     }
 
@@ -220,17 +216,17 @@ impl Tracker {
         let follower = self.follower();
         let mut matches: Vec<Option<Match>> = vec![None; self.centres.len()];
         let mut attempts = vec![0; matches.len()];
-        if let Some((_, states)) = &self.before {
+        if let Some((_, before)) = &self.before {
             // Where the step is large, the fields of the image before are far from those of this one, and most searches from them fail. So a few
             // points are searched first, and lead to their neighbours; points that these do not lead to start from their own field.
-            let known: Vec<usize> = (0..states.len())
-                .filter(|point| states[*point].is_some())
+            let known: Vec<usize> = (0..before.len())
+                .filter(|point| before[*point].is_some())
                 .collect();
             for every in [SAMPLED, 1] {
                 let points = known.iter().copied().step_by(every);
                 let points = points.filter(|point| matches[*point].is_none());
                 let guesses =
-                    points.filter_map(|point| Some((point, states[point].as_ref()?.warp)));
+                    points.filter_map(|point| Some((point, before[point].as_ref()?.warp)));
                 for (point, one) in follower.find_all(spline, guesses.collect()) {
                     matches[point] = one;
                 }
