@@ -29,7 +29,6 @@ mod matrices;
 mod noise;
 mod over;
 mod patches;
-mod pyramid;
 mod read;
 mod region;
 mod seed;

@@ -1,16 +1,16 @@
-//! The first guess: where one subset went, without knowing anything.
+//! The first guess: where one subset went, without any knowledge of the motion.
 //!
 //! The subset is looked for on the coarsest of a pyramid of images by normalised cross-correlation, first as it is, then turned and stretched;
-//! the best places are refined level by level.
+//! the best positions are refined level by level.
 
 use nalgebra::{Matrix2, Rotation2};
 use rayon::prelude::*;
 
+use super::filter::symmetric;
 use super::gradient::Reference;
 use super::grey::GreyImage;
-use super::grid::LEAST_SIMILARITY;
+use super::grid::{Follower, LEAST_SIMILARITY};
 use super::noise::Noise;
-use super::pyramid::{halved, halved_flags};
 use super::spline::Spline;
 use super::subset::{Match, Subset};
 use super::warp::{Order, Warp};
@@ -21,71 +21,78 @@ const COARSEST: usize = 160;
 /// Half the width of subsets on coarse images.
 const HALF: usize = 9;
 
-/// A reference, and what it is compared with, on one level.
+/// The binomial filter before each halving (P. Burt, E. Adelson, IEEE Trans. Commun. 31, 532 (1983)).
+const BINOMIAL: [f32; 3] = [6.0 / 16.0, 4.0 / 16.0, 1.0 / 16.0];
+
+/// An image of half the size: pixel (x, y) of it is pixel (2x, 2y).
+fn halved(image: &GreyImage) -> GreyImage {
+    let smooth = symmetric(image, &BINOMIAL);
+    let [width, height] = image.size().map(|length| length.div_ceil(2));
+    GreyImage::of(width, height, |x, y| smooth.value(2 * x, 2 * y))
+}
+
+/// The flags of the pixels of [`halved`].
+fn halved_flags(flags: &[bool], [width, height]: [usize; 2]) -> Vec<bool> {
+    let rows = (0..height).step_by(2);
+    rows.flat_map(|y| (0..width).step_by(2).map(move |x| flags[y * width + x]))
+        .collect()
+}
+
+/// A reference and the image that it is compared with, on one level of the pyramid.
 struct Level {
     reference: Reference,
     noise: Noise,
     spline: Spline,
-    frame: GreyImage,
+    image: GreyImage,
 }
 
-/// Both images from fine to coarse; the finest is not among them.
+/// A reference and the image in which its subsets are looked for, in full size and in smaller ones.
 pub struct Pyramid<'a> {
-    finest: (&'a Reference, &'a Noise, &'a Spline),
+    follower: &'a Follower<'a>,
+    image: &'a GreyImage,
+    spline: &'a Spline,
+    /// From half the size down.
     coarse: Vec<Level>,
-    half: usize,
-    order: Order,
-    frame: &'a GreyImage,
 }
 
 impl<'a> Pyramid<'a> {
-    pub fn new(
-        finest: (&'a Reference, &'a Noise, &'a Spline),
-        frame: &'a GreyImage,
-        half: usize,
-        order: Order,
-    ) -> Self {
+    pub fn new(follower: &'a Follower<'a>, image: &'a GreyImage, spline: &'a Spline) -> Self {
         let mut coarse: Vec<Level> = Vec::new();
         loop {
-            let (image, usable, other) = match coarse.last() {
-                Some(level) => (
-                    &level.reference.image,
-                    &level.reference.usable,
-                    &level.frame,
-                ),
-                None => (&finest.0.image, &finest.0.usable, frame),
+            let (reference, other) = match coarse.last() {
+                Some(level) => (&level.reference, &level.image),
+                None => (follower.reference, image),
             };
-            let size = image.size();
+            let size = reference.image.size();
             if size[0].max(size[1]) <= COARSEST || size[0].min(size[1]) <= 4 * HALF {
                 break;
             }
-            let (image, usable, other) = (halved(image), halved_flags(usable, size), halved(other));
-            let noise = Noise::of_image(&image, &usable);
+            let first = halved(&reference.image);
+            let usable = halved_flags(&reference.usable, size);
+            let noise = Noise::of_image(&first, &usable);
+            let other = halved(other);
             coarse.push(Level {
                 spline: Spline::new(&other),
-                reference: Reference::new(image, usable, &noise),
+                reference: Reference::new(first, usable, &noise),
                 noise,
-                frame: other,
+                image: other,
             });
         }
         Self {
-            finest,
+            follower,
+            image,
+            spline,
             coarse,
-            half,
-            order,
-            frame,
         }
     }
 
     /// Finds a subset about a pixel of the reference.
     pub fn seek(&self, centre: [usize; 2]) -> Option<Match> {
-        self.refine(centre, Warp::default(), self.coarse.len())
-            .or_else(|| {
-                let positions = self.correlate(centre, Matrix2::identity());
-                positions
-                    .into_iter()
-                    .find_map(|(_, warp)| self.refine(centre, warp, self.coarse.len()))
-            })
+        self.refine(centre, Warp::default()).or_else(|| {
+            let candidates = self.correlate(centre, Matrix2::identity());
+            let mut candidates = candidates.into_iter();
+            candidates.find_map(|(_, warp)| self.refine(centre, warp))
+        })
     }
 
     /// Finds it turned and stretched.
@@ -113,52 +120,42 @@ impl<'a> Pyramid<'a> {
         let mut candidates: Vec<(f64, Warp)> = candidates.collect();
         candidates.sort_by(|a, b| b.0.total_cmp(&a.0));
         let best = candidates.into_iter().take(BEST);
-        let refined = best.filter_map(|(_, warp)| self.refine(centre, warp, self.coarse.len()));
+        let refined = best.filter_map(|(_, warp)| self.refine(centre, warp));
         refined.max_by(|a, b| a.similarity.total_cmp(&b.similarity))
     }
 
-    /// From a displacement on a level down to the finest one.
-    fn refine(&self, centre: [usize; 2], guess: Warp, from: usize) -> Option<Match> {
+    /// From a displacement on the coarsest level up to the full size.
+    fn refine(&self, centre: [usize; 2], guess: Warp) -> Option<Match> {
         let mut warp = guess;
-        for (level, number) in self
-            .coarse
-            .iter()
-            .zip(1_u32..)
-            .take(from)
-            .collect::<Vec<_>>()
-            .into_iter()
-            .rev()
-        {
-            let at = centre.map(|c| c >> number);
+        for (index, level) in self.coarse.iter().enumerate().rev() {
+            let at = centre.map(|c| c >> (index + 1));
             let subset = Subset::new(&level.reference, at, HALF, Order::Affine, &level.noise);
-            if let Some(fit) =
-                subset.and_then(|subset| subset.find(&level.spline, warp, &level.noise))
-            {
-                warp = fit.warp;
-            }
-            warp = warp.scaled(2.0);
+            let fit = subset.and_then(|subset| subset.find(&level.spline, warp, &level.noise));
+            warp = fit.map_or(warp, |fit| fit.warp).scaled(2.0);
         }
-        let (reference, noise, spline) = self.finest;
-        let subset = |order| Subset::new(reference, centre, self.half, order, noise);
-        let fit = subset(Order::Affine)?.find(spline, warp, noise)?;
-        let fit = match self.order {
+        let Follower {
+            reference,
+            half,
+            order,
+            noise,
+            ..
+        } = *self.follower;
+        let subset = |order| Subset::new(reference, centre, half, order, noise);
+        let fit = subset(Order::Affine)?.find(self.spline, warp, noise)?;
+        let fit = match order {
             Order::Affine => fit,
-            order => subset(order)?.find(spline, fit.warp, noise)?,
+            order => subset(order)?.find(self.spline, fit.warp, noise)?,
         };
         (fit.similarity >= LEAST_SIMILARITY).then_some(fit)
     }
 
-    /// The best three places on the coarsest level of a subset deformed by F, with their correlations.
+    /// The best three fields on the coarsest level of a subset deformed by F, with their correlations.
     fn correlate(&self, centre: [usize; 2], f: Matrix2<f64>) -> Vec<(f64, Warp)> {
-        let (image, usable, frame) = match self.coarse.last() {
-            Some(level) => (
-                &level.reference.image,
-                &level.reference.usable,
-                &level.frame,
-            ),
-            None => (&self.finest.0.image, &self.finest.0.usable, self.frame),
+        let (reference, other) = match self.coarse.last() {
+            Some(level) => (&level.reference, &level.image),
+            None => (self.follower.reference, self.image),
         };
-        let [width, height] = image.size();
+        let [width, height] = reference.image.size();
         let centre = centre.map(|c| (c >> self.coarse.len()) as f64);
         let Some(inverse) = f.try_inverse() else {
             return Vec::new();
@@ -170,7 +167,8 @@ impl<'a> Pyramid<'a> {
             let [a, b] = [centre[0] + from.x, centre[1] + from.y];
             let inside = a >= 0.0 && b >= 0.0 && a < (width - 1) as f64 && b < (height - 1) as f64;
             let (column, row) = (a as usize, b as usize);
-            (inside && usable[row * width + column]).then(|| ([x, y], linear(image, a, b)))
+            (inside && reference.usable[row * width + column])
+                .then(|| ([x, y], linear(&reference.image, a, b)))
         });
         let (offsets, mut values): (Vec<[isize; 2]>, Vec<f32>) = template.unzip();
         if offsets.len() < (HALF + 1).pow(2) {
@@ -182,13 +180,14 @@ impl<'a> Pyramid<'a> {
             let displacement = [x as f64 - centre[0], y as f64 - centre[1]];
             (score, Warp::affine(displacement, f - Matrix2::identity()))
         };
-        best_places(frame, &offsets, &values)
+        best_positions(other, &offsets, &values)
             .into_iter()
             .map(warp)
             .collect()
     }
 }
 
+/// The value between four pixels, linear along x and y.
 fn linear(image: &GreyImage, x: f64, y: f64) -> f32 {
     let (column, row) = (x as usize, y as usize);
     let (s, t) = ((x - column as f64) as f32, (y - row as f64) as f32);
@@ -197,15 +196,15 @@ fn linear(image: &GreyImage, x: f64, y: f64) -> f32 {
     along(row) * (1.0 - t) + along(row + 1) * t
 }
 
-/// The best three places in an image of a template with mean 0, more than two pixels apart, with their correlations.
-fn best_places(
-    frame: &GreyImage,
+/// The best three positions in an image of a template with mean 0, more than two pixels apart, with their correlations.
+fn best_positions(
+    image: &GreyImage,
     offsets: &[[isize; 2]],
     template: &[f32],
 ) -> Vec<(f64, usize, usize)> {
     const BEST: usize = 3;
     const APART: usize = 2;
-    let ([columns, rows], pixels) = (frame.size(), frame.values());
+    let ([columns, rows], pixels) = (image.size(), image.values());
     let size = template
         .iter()
         .map(|value| value * value)

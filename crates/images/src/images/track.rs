@@ -247,12 +247,7 @@ impl Tracker {
         matches: &mut [Option<Match>],
         attempts: &mut [usize],
     ) {
-        let pyramid = Pyramid::new(
-            (follower.reference, follower.noise, spline),
-            image,
-            follower.half,
-            follower.order,
-        );
+        let pyramid = Pyramid::new(follower, image, spline);
         // A part of the specimen that nothing leads to.
         let is_open = |point: usize, matches: &[Option<Match>], attempts: &[usize]| {
             follower.centres[point].is_some() && matches[point].is_none() && attempts[point] == 0
