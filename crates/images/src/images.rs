@@ -44,11 +44,10 @@ pub use grey::GreyImage;
 pub use markers::series;
 pub use noise::Noise;
 pub use patches::Patches;
-pub use read::{ImageFile, in_order, is_image_path, list, of_bytes, pages};
+pub use read::{ImageFile, in_order, is_image_path, list, of_bytes};
 pub use region::Region;
 pub use spline::Spline;
 pub use state::Tracked;
-pub use subset::{Match, Subset};
 pub use track::{Settings, Tracker};
 pub use warp::{Order, Warp};
 

@@ -58,19 +58,19 @@ trait Encoded: BufRead + Seek {}
 
 impl<T: BufRead + Seek> Encoded for T {}
 
+/// The end of a file's name in small letters; empty where it has none.
+fn extension(path: &Path) -> String {
+    let end = path.extension().unwrap_or_default();
+    end.to_string_lossy().to_lowercase()
+}
+
 /// Whether a file is an image by the end of its name.
 pub fn is_image_path(path: &Path) -> bool {
-    let end = path
-        .extension()
-        .map(|end| end.to_string_lossy().to_lowercase());
-    end.is_some_and(|end| ENDS.contains(&&*end))
+    ENDS.contains(&&*extension(path))
 }
 
 fn is_tiff(path: &Path) -> bool {
-    let end = path
-        .extension()
-        .map(|end| end.to_string_lossy().to_lowercase());
-    end.is_some_and(|end| end.starts_with("tif"))
+    extension(path).starts_with("tif")
 }
 
 fn refuse(path: &Path, fault: impl std::fmt::Display, hint: &str) -> Error {
@@ -90,37 +90,37 @@ pub fn list(paths: &[PathBuf]) -> Result<Vec<ImageFile>, Error> {
     if files.is_sorted() {
         files.sort_by_cached_key(|path| in_order(&path.to_string_lossy()));
     }
-    let pages: Vec<Vec<ImageFile>> = files
-        .iter()
-        .map(|path| pages(path))
-        .collect::<Result<_, _>>()?;
-    Ok(pages.concat())
+    let mut images = Vec::new();
+    for file in &files {
+        images.extend(pages(file)?);
+    }
+    Ok(images)
 }
 
 /// The files that a path stands for.
 fn expanded(path: &Path) -> Result<Vec<PathBuf>, Error> {
-    let name = path
-        .file_name()
-        .map(|name| name.to_string_lossy().into_owned())
-        .unwrap_or_default();
-    let pattern = name.contains(['*', '?']) && !path.exists();
-    let folder = match (path.is_dir(), pattern) {
-        (true, _) => path.to_owned(),
-        (_, true) => path
-            .parent()
-            .filter(|folder| !folder.as_os_str().is_empty())
-            .unwrap_or(Path::new("."))
-            .to_owned(),
-        _ => return Ok(vec![path.to_owned()]),
+    let name_of = |path: &Path| {
+        path.file_name()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .into_owned()
     };
-    let entries = std::fs::read_dir(&folder)
-        .map_err(|fault| refuse(&folder, fault, "name a folder that can be read"))?;
+    let name = name_of(path);
+    let is_pattern = name.contains(['*', '?']) && !path.exists();
+    let folder = if path.is_dir() {
+        path
+    } else if is_pattern {
+        let parent = path.parent();
+        let parent = parent.filter(|folder| !folder.as_os_str().is_empty());
+        parent.unwrap_or(Path::new("."))
+    } else {
+        return Ok(vec![path.to_owned()]);
+    };
+    let entries = std::fs::read_dir(folder)
+        .map_err(|fault| refuse(folder, fault, "name a folder that can be read"))?;
     let suits = |path: &PathBuf| {
-        let file_name = path
-            .file_name()
-            .map(|name| name.to_string_lossy().into_owned())
-            .unwrap_or_default();
-        is_image_path(path) && (!pattern || matches(name.as_bytes(), file_name.as_bytes()))
+        let is_matched = || matches(name.as_bytes(), name_of(path).as_bytes());
+        is_image_path(path) && (!is_pattern || is_matched())
     };
     let mut paths: Vec<PathBuf> = entries
         .filter_map(|entry| Some(entry.ok()?.path()))
@@ -133,7 +133,7 @@ fn expanded(path: &Path) -> Result<Vec<PathBuf>, Error> {
     Ok(paths)
 }
 
-/// Whether a name is as a pattern with `*` and `?` says.
+/// Whether a name matches a pattern with `*` and `?`.
 fn matches(pattern: &[u8], name: &[u8]) -> bool {
     match (pattern, name) {
         ([], []) => true,
@@ -162,10 +162,7 @@ pub fn in_order(name: &str) -> String {
 }
 
 /// The images of a file: one, or as many as a TIFF file has pages.
-///
-/// # Errors
-/// [`Error::Input`] where it cannot be read.
-pub fn pages(path: &Path) -> Result<Vec<ImageFile>, Error> {
+fn pages(path: &Path) -> Result<Vec<ImageFile>, Error> {
     let first = ImageFile::new(path, 0);
     if !is_tiff(path) {
         return Ok(vec![first]);
@@ -265,13 +262,9 @@ impl ImageFile {
 
     /// The name of the file without its end, and the page of several.
     pub fn name(&self) -> String {
-        let stem = self
-            .path
-            .file_stem()
-            .map(|stem| stem.to_string_lossy().into_owned())
-            .unwrap_or_default();
+        let stem = self.path.file_stem().unwrap_or_default().to_string_lossy();
         match self.page {
-            0 => stem,
+            0 => stem.into_owned(),
             page => format!("{stem}, page {}", page + 1),
         }
     }
