@@ -1,10 +1,10 @@
-//! Pixels that tell nothing: dead ones, and areas that are saturated.
+//! Pixels without information: dead ones, and saturated areas.
 
-use super::grey::GreyImage;
+use super::grey::{GreyImage, range};
 use super::noise::Noise;
 use crate::error::Diagnostic;
 
-/// Beyond so many standard deviations of the noise a pixel is no neighbour of its neighbours.
+/// Standard deviations of the noise beyond which a difference of grey values is none of noise.
 const FAR: f32 = 6.0;
 
 /// Pixels that stand alone in both images with the same value, as a sensor's dead or hot pixels do: farther from the median of their eight
@@ -19,21 +19,13 @@ pub fn dead(first: &GreyImage, other: &GreyImage, noise: &Noise) -> Vec<usize> {
         let deviation = noise.variance(f64::from(first.value(x, y))).sqrt() as f32;
         let alone = |image: &GreyImage| {
             let contrast = image.value(x, y) - median(image, x, y);
-            let (low, high) = range(image.around(x, y));
+            let (low, high) = range(&image.around(x, y));
             (contrast.abs() > 3.0 * (high - low) + FAR * deviation).then_some(contrast)
         };
         let same = (first.value(x, y) - other.value(x, y)).abs() <= FAR * deviation;
         same && matches!((alone(first), alone(other)), (Some(a), Some(b)) if a * b > 0.0)
     };
     inner.filter(is_dead).map(|(x, y)| y * width + x).collect()
-}
-
-fn range(values: [f32; 8]) -> (f32, f32) {
-    values
-        .iter()
-        .fold((f32::MAX, f32::MIN), |(low, high), value| {
-            (low.min(*value), high.max(*value))
-        })
 }
 
 fn median(image: &GreyImage, x: usize, y: usize) -> f32 {
@@ -73,7 +65,7 @@ pub fn saturated(image: &GreyImage) -> Vec<usize> {
         .collect()
 }
 
-/// What a user must know of them; `pixels` is the number of pixels in the region.
+/// The warnings about so many dead and saturated pixels among all `pixels` of the region.
 pub fn warnings(dead: usize, saturated: usize, pixels: usize) -> Vec<Diagnostic> {
     const MUCH: f64 = 0.001;
     let of_dead = (dead > 0).then(|| {

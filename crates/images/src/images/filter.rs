@@ -4,8 +4,8 @@ use rayon::prelude::*;
 
 use super::grey::GreyImage;
 
-/// The place of a mirrored index.
-fn mirrored(index: isize, length: usize) -> usize {
+/// The index of the value that stands at an index outside of a line, where the line is mirrored at its ends.
+pub fn mirrored(index: isize, length: usize) -> usize {
     let last = length as isize - 1;
     if last <= 0 {
         return 0;
@@ -41,7 +41,7 @@ pub fn symmetric(image: &GreyImage, half: &[f32]) -> GreyImage {
     GreyImage::new(width, height, both)
 }
 
-/// 0, −1, 1, −2, 2 … with the weights of what is so far away.
+/// The shifts 0, −1, 1, −2, 2 … with their weights.
 fn shifts(half: &[f32]) -> impl Iterator<Item = (isize, f32)> {
     let both = |(k, weight): (isize, &f32)| {
         let weight = *weight;

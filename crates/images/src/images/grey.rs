@@ -8,6 +8,14 @@ pub struct GreyImage {
     values: Vec<f32>,
 }
 
+/// The least and the largest of some values.
+pub fn range(values: &[f32]) -> (f32, f32) {
+    let ends = (f32::MAX, f32::MIN);
+    values.iter().fold(ends, |(low, high), value| {
+        (low.min(*value), high.max(*value))
+    })
+}
+
 /// The luminance of red, green and blue (ITU-R BT.709).
 pub fn luminance([r, g, b]: [f32; 3]) -> f32 {
     0.2126 * r + 0.7152 * g + 0.0722 * b

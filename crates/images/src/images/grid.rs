@@ -17,9 +17,9 @@ const MOST_ATTEMPTS: usize = 4;
 /// Points of a regular grid.
 #[derive(Clone, Debug)]
 pub struct Grid {
-    /// Their places in pixels of the first image.
+    /// Their positions in the first image in pixels.
     pub points: Vec<[usize; 2]>,
-    /// The up to eight next ones of each.
+    /// The neighbours of each, at most eight, by their numbers.
     pub neighbours: Vec<Vec<usize>>,
 }
 
@@ -60,7 +60,7 @@ impl Grid {
     }
 }
 
-/// What is followed: subsets of a reference about the points' places in it.
+/// What is followed: subsets of a reference about the points' positions in it.
 pub struct Follower<'a> {
     pub reference: &'a Reference,
     /// The pixel of the reference at which each point is.
@@ -72,7 +72,7 @@ pub struct Follower<'a> {
 }
 
 impl Follower<'_> {
-    /// Where a point is found, from a guess.
+    /// The match of a point, searched from a guess.
     pub fn find(&self, point: usize, image: &Spline, guess: Warp) -> Option<Match> {
         let subset = Subset::new(
             self.reference,
@@ -136,10 +136,10 @@ impl Follower<'_> {
         Some(best.warp.moved(x as f64 - a as f64, y as f64 - b as f64))
     }
 
-    /// Takes away points whose displacement is far from what their neighbours' fields say there: beyond five standard deviations of these and
-    /// a tenth of a pixel (as J. Westerweel, F. Scarano, Exp. Fluids 39, 1096 (2005), with gradients), and those of which too few neighbours are
-    /// left to tell, as where the specimen leaves the image. Returns how many.
-    pub fn drop_outliers(&self, matches: &mut [Option<Match>]) -> usize {
+    /// Drops points whose displacement is far from the one that their neighbours' fields have there: by more than five standard deviations of
+    /// these and a tenth of a pixel (as J. Westerweel, F. Scarano, Exp. Fluids 39, 1096 (2005), with gradients). Points with too few matched
+    /// neighbours for this test are dropped too, as where the specimen leaves the image.
+    pub fn drop_outliers(&self, matches: &mut [Option<Match>]) {
         const FEWEST: usize = 3;
         const FAR: f64 = 5.0;
         const SURE: f64 = 0.1;
@@ -153,13 +153,9 @@ impl Follower<'_> {
                 return false;
             };
             let there = self.neighbours[point].iter().filter_map(|other| {
-                let ([a, b], other) = (self.centres[*other]?, matches[*other].as_ref()?);
-                Some(
-                    other
-                        .warp
-                        .moved(x as f64 - a as f64, y as f64 - b as f64)
-                        .displacement(),
-                )
+                let ([a, b], warp) = (self.centres[*other]?, matches[*other].as_ref()?.warp);
+                let moved = warp.moved(x as f64 - a as f64, y as f64 - b as f64);
+                Some(moved.displacement())
             });
             let there: Vec<[f64; 2]> = there.collect();
             if there.len() < FEWEST {
@@ -175,6 +171,5 @@ impl Follower<'_> {
         };
         let far: Vec<usize> = (0..matches.len()).filter(|point| is_far(*point)).collect();
         far.iter().for_each(|point| matches[*point] = None);
-        far.len()
     }
 }

@@ -1,7 +1,6 @@
 //! The noise of pixels, which grows with the intensity where photons are counted.
 
 use super::grey::GreyImage;
-use crate::error::Diagnostic;
 
 /// Var(I) = base + growth · I, in grey values squared.
 ///
@@ -17,7 +16,7 @@ pub struct Noise {
 /// The variance of rounding to whole grey values.
 const ROUNDING: f64 = 1.0 / 12.0;
 
-/// Width of a block of pixels in which noise is looked at.
+/// Width of the blocks of pixels from which the noise of an image alone is estimated.
 const BLOCK: usize = 8;
 
 /// Sums of squares over classes of intensity.
@@ -104,8 +103,8 @@ impl Noise {
         (self.base + self.growth * intensity.max(0.0)).max(ROUNDING)
     }
 
-    /// From an image alone, to begin with: the second differences across the least structured tenth of blocks; too large where the pattern is
-    /// fine, and a fifth too small where there is none (J. Immerkær, Comput. Vis. Image Underst. 64, 300 (1996)).
+    /// A first estimate from an image alone, by the second differences across the least structured tenth of blocks: too large where the
+    /// pattern is fine, and a fifth too small where there is none (J. Immerkær, Comput. Vis. Image Underst. 64, 300 (1996)).
     ///
     /// ```text
     /// N = [1 −2 1; −2 4 −2; 1 −2 1] ∗ I,   Var(N) = 36 Var(I)
@@ -133,16 +132,6 @@ impl Noise {
             base: least.unwrap_or(ROUNDING).max(ROUNDING),
             growth: 0.0,
         }
-    }
-
-    /// In words, for an image whose white is `white`.
-    pub fn warning(&self, white: f32) -> Diagnostic {
-        let [dark, light] = [0.0, f64::from(white)].map(|value| self.variance(value).sqrt());
-        let message = format!(
-            "noise of the pixels: standard deviation {dark:.2} grey values where it is dark, {light:.2} where it is white ({white})"
-        );
-        Diagnostic::warning("", message)
-            .hint("the standard deviations of displacements follow from it")
     }
 }
 

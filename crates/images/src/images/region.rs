@@ -1,6 +1,6 @@
 //! The pixels of the specimen.
 
-use super::grey::GreyImage;
+use super::grey::{GreyImage, range};
 use crate::error::Error;
 
 /// Which pixels show the specimen.
@@ -32,10 +32,7 @@ impl Region {
             let message = format!("the mask has {a} × {b} pixels, and the images have {c} × {d}");
             return Err(Error::input(message, "draw it on the first image"));
         }
-        let values = mask.values().iter();
-        let (low, high) = values.fold((f32::MAX, f32::MIN), |(low, high), value| {
-            (low.min(*value), high.max(*value))
-        });
+        let (low, high) = range(mask.values());
         let is_grey = |value: &&f32| (0.1..0.9).contains(&((**value - low) / (high - low)));
         let grey = mask.values().iter().filter(is_grey).count() as f64;
         let fault = if low >= high {

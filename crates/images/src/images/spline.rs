@@ -10,12 +10,13 @@ use std::sync::OnceLock;
 
 use rayon::prelude::*;
 
+use super::filter::mirrored;
 use super::grey::GreyImage;
 
 /// The pole of the cubic B-spline, √3 − 2.
 const POLE: f32 = -0.267_949_2;
 
-/// How many pixels away a value is felt, to the precision of a coefficient.
+/// Distance in pixels beyond which a value does not change a coefficient, to the precision of the latter.
 const REACH: usize = 14;
 
 /// Rows and columns of coefficients before the first pixel and behind the last one.
@@ -31,7 +32,7 @@ pub struct Spline {
     coefficients: Vec<f32>,
 }
 
-/// The recursions along one line of values, given by their number and access to a whole line of them.
+/// The recursions from row to row, in all columns at the same time.
 fn along_rows(values: &mut [f32], width: usize) {
     let height = values.len() / width;
     let combine = |values: &mut [f32], from: usize, to: usize, sign: f32| {
@@ -84,7 +85,7 @@ fn transposed(values: &[f32], width: usize) -> Vec<f32> {
     turned
 }
 
-/// The values of the four B-splines that are not zero at a place between 0 and 1 behind the second one's middle.
+/// The values of the four B-splines that are not zero at a distance t from 0 to 1 behind the second one's middle.
 #[inline]
 fn weights(t: f32) -> [f32; 4] {
     let s = 1.0 - t;
@@ -107,25 +108,17 @@ impl Spline {
         along_rows(&mut turned, height);
         let values = transposed(&turned, height);
         let stride = width + BEFORE + BEHIND;
-        let mirrored = |index: usize, length: usize| {
-            let last = length as isize - 1;
-            let index = index as isize - BEFORE as isize;
-            let index = if last == 0 {
-                0
-            } else {
-                index.rem_euclid(2 * last)
-            };
-            index.min(2 * last - index).max(0) as usize
-        };
+        let pixel =
+            |index: usize, length: usize| mirrored(index as isize - BEFORE as isize, length);
         let mut coefficients = vec![0.0; stride * (height + BEFORE + BEHIND)];
         coefficients
             .par_chunks_mut(stride)
             .enumerate()
             .for_each(|(y, row)| {
-                let from = &values[mirrored(y, height) * width..];
+                let from = &values[pixel(y, height) * width..];
                 row.iter_mut()
                     .enumerate()
-                    .for_each(|(x, out)| *out = from[mirrored(x, width)]);
+                    .for_each(|(x, out)| *out = from[pixel(x, width)]);
             });
         Self {
             width,
@@ -135,7 +128,7 @@ impl Spline {
         }
     }
 
-    /// The value at a place; `None` outside of the pixels' centres.
+    /// The value at a position; `None` outside of the pixels' centres.
     #[inline]
     pub fn value(&self, x: f64, y: f64) -> Option<f32> {
         let inside =
@@ -184,7 +177,7 @@ impl Spline {
         [derivative(1, stride), derivative(stride, 1)]
     }
 
-    /// The variance of the value at a place, relative to that of the pixels' white noise: 1 at a pixel, less between pixels.
+    /// The variance of the value at a position, relative to that of the pixels' white noise: 1 at a pixel, less between pixels.
     pub fn noise_gain(x: f64, y: f64) -> f64 {
         const STEPS: usize = 32;
         static TABLE: OnceLock<Vec<f64>> = OnceLock::new();

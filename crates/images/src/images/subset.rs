@@ -58,6 +58,7 @@ pub struct Match {
 const LEAST_SHARE: f64 = 0.5;
 
 /// Sums over the pixels with values of the other image.
+#[derive(Default)]
 struct Sums {
     count: f64,
     products: [f64; 12],
@@ -133,35 +134,24 @@ impl Subset {
         })
     }
 
-    /// The mean of the pixels' places in pixels.
+    /// The mean of the pixels' positions in pixels.
     pub fn middle(&self) -> [f64; 2] {
         let count = self.pixels.len() as f64;
-        let sum = |part: fn(&Pixel) -> f32| {
-            self.pixels
-                .iter()
-                .map(|pixel| f64::from(part(pixel)))
-                .sum::<f64>()
-                / count
+        let mean = |part: fn(&Pixel) -> f32| {
+            let parts = self.pixels.iter().map(|pixel| f64::from(part(pixel)));
+            parts.sum::<f64>() / count
         };
         [
-            self.centre[0] + sum(|pixel| pixel.x),
-            self.centre[1] + sum(|pixel| pixel.y),
+            self.centre[0] + mean(|pixel| pixel.x),
+            self.centre[1] + mean(|pixel| pixel.y),
         ]
     }
 
     /// The root mean square of both components' standard deviations that an image of the same noise would give without deformation, in pixels.
     pub fn expected_deviation(&self) -> f64 {
-        (0.5 * self.expected_covariance().trace()).sqrt()
-    }
-
-    /// The covariance of a displacement that an image of the same noise would have without deformation, in pixels².
-    pub fn expected_covariance(&self) -> Matrix2<f64> {
-        self.covariance(
-            Matrix2::identity(),
-            1.0,
-            self.matrices.value / self.pixels.len() as f64,
-            &self.noise,
-        )
+        let mean = self.matrices.value / self.pixels.len() as f64;
+        let covariance = self.covariance(Matrix2::identity(), 1.0, mean, &self.noise);
+        (0.5 * covariance.trace()).sqrt()
     }
 
     fn covariance(&self, f: Matrix2<f64>, gain: f64, other: f64, noise: &Noise) -> Matrix2<f64> {
@@ -194,14 +184,15 @@ impl Subset {
         None
     }
 
-    /// One step of [`Self::find`]: the displacement of the images' misfit that is linear about a guess, wherever noise would lead the search.
+    /// One step of [`Self::find`]: the displacement by the images' misfit linearised about a guess, for patches whose noise would lead a search
+    /// astray.
     pub fn find_linear(mut self, image: &Spline, guess: Warp, noise: &Noise) -> Option<Match> {
         let mut warp = guess;
         let (sums, _) = self.improve(image, &mut warp, noise)?;
         Some(self.concluded(&sums, (guess, warp), noise))
     }
 
-    /// One step; the sums before it, and its length in pixels. `None` where it leads too far.
+    /// Takes one step; gives the sums before it and its length in pixels. `None` where it leads too far.
     fn improve(&mut self, image: &Spline, warp: &mut Warp, noise: &Noise) -> Option<(Sums, f64)> {
         let sums = self.sums_inside(image, warp)?;
         let f = warp.deformation_gradient();
@@ -218,7 +209,7 @@ impl Subset {
         (sound && largest <= 2.0 * self.half).then_some((sums, largest))
     }
 
-    /// The sums about a field; pixels that it carries out of the image are left out, and `None` where they are most.
+    /// The sums about a field without the pixels that it carries out of the image; `None` where these are most.
     fn sums_inside(&mut self, image: &Spline, warp: &Warp) -> Option<Sums> {
         loop {
             match self.sums(image, warp) {
@@ -239,23 +230,15 @@ impl Subset {
     fn sums(&self, image: &Spline, warp: &Warp) -> Result<Sums, Vec<Pixel>> {
         let mut sums = Sums {
             count: self.pixels.len() as f64,
-            products: [0.0; 12],
-            value: 0.0,
-            square: 0.0,
-            product: 0.0,
+            ..Sums::default()
         };
         let (scale, functions_of_warp) = (1.0 / self.half, warp.functions());
-        let mut outside = false;
-        let mut is_inside = vec![];
+        let mut outside = Vec::new();
         for (index, pixel) in self.pixels.iter().enumerate() {
             let (x, y) = (f64::from(pixel.x), f64::from(pixel.y));
             let [u, v] = warp.at(x, y, functions_of_warp);
             let Some(value) = image.value(self.centre[0] + x + u, self.centre[1] + y + v) else {
-                if !outside {
-                    is_inside = vec![true; self.pixels.len()];
-                    outside = true;
-                }
-                is_inside[index] = false;
+                outside.push(index);
                 continue;
             };
             let value = f64::from(value);
@@ -269,14 +252,11 @@ impl Subset {
             sums.square += value * value;
             sums.product += value * f64::from(pixel.value);
         }
-        if outside {
-            let pixels = self.pixels.iter().zip(is_inside);
-            return Err(pixels
-                .filter(|(_, inside)| *inside)
-                .map(|(pixel, _)| *pixel)
-                .collect());
+        if outside.is_empty() {
+            return Ok(sums);
         }
-        Ok(sums)
+        let inside = (0..self.pixels.len()).filter(|index| outside.binary_search(index).is_err());
+        Err(inside.map(|index| self.pixels[index]).collect())
     }
 
     /// Variances of both images without noise, and their covariance.

@@ -40,7 +40,7 @@ impl Default for Settings {
     }
 }
 
-/// Standard deviation in pixels of a displacement beyond which a pattern is none.
+/// Standard deviation in pixels of a displacement from which on a subset has no pattern that could be followed.
 const KNOWN: f64 = 1.0;
 
 /// The pattern of a first image.
@@ -61,7 +61,7 @@ pub struct Tracker {
     pub(super) patch_layout: OnceLock<PatchLayout>,
 }
 
-/// Of so many points one starts from its field in the image before.
+/// One of so many points is searched first, from its field in the image before.
 const SAMPLED: usize = 17;
 
 /// The most seeds of separate parts of a specimen.
@@ -144,12 +144,12 @@ impl Tracker {
         self.white
     }
 
-    /// The noise of the pixels; after the first image has been followed, from what remains between both.
+    /// The noise of the pixels; once an image has been followed, that of its residuals.
     pub fn noise(&self) -> &Noise {
         &self.noise
     }
 
-    /// The places of all points in pixels.
+    /// The positions of all points in pixels.
     pub fn positions(&self) -> &[[usize; 2]] {
         &self.grid.points
     }
@@ -160,7 +160,7 @@ impl Tracker {
     }
 
     /// A later image without its dead pixels.
-    pub fn repaired(&self, image: &GreyImage) -> GreyImage {
+    pub(super) fn repaired(&self, image: &GreyImage) -> GreyImage {
         repaired(image, &self.dead)
     }
 
@@ -248,7 +248,7 @@ impl Tracker {
         attempts: &mut [usize],
     ) {
         let pyramid = Pyramid::new(follower, image, spline);
-        // A part of the specimen that nothing leads to.
+        // A point of a part of the specimen that no match has spread to.
         let is_open = |point: usize, matches: &[Option<Match>], attempts: &[usize]| {
             follower.centres[point].is_some() && matches[point].is_none() && attempts[point] == 0
         };
@@ -278,7 +278,7 @@ impl Tracker {
         }
     }
 
-    /// The noise from what remains, and the matches with it.
+    /// Estimates the noise from the residuals of the first matches, and repeats the matches with it.
     fn learn_noise(&mut self, spline: &Spline, matches: &mut [Option<Match>]) {
         let mut misfits: Vec<f64> = matches.iter().flatten().map(|one| one.misfit).collect();
         if misfits.is_empty() {
