@@ -11,7 +11,7 @@ use nalgebra::Matrix2;
 use super::grid::Grid;
 use super::state::Tracked;
 
-/// Adds b bᵀ, less where it is hidden by noise, to the covariance of each point that has a neighbour along both axes.
+/// Adds b bᵀ, times the part of |b|² that is not noise, to the covariance of each point that has a neighbour along both axes.
 pub fn add_curvature(grid: &Grid, spacing: usize, half: usize, tracked: &mut [Option<Tracked>]) {
     let square = (half * half) as f64 / 6.0;
     let biases: Vec<Option<[f64; 2]>> = (0..tracked.len())
@@ -21,8 +21,8 @@ pub fn add_curvature(grid: &Grid, spacing: usize, half: usize, tracked: &mut [Op
         if let (Some(one), Some([x, y])) = (one, bias) {
             // A bias below the noise is mostly that of the gradients.
             let noise = one.covariance.trace();
-            let seen = (x * x + y * y) / (x * x + y * y + noise).max(f64::MIN_POSITIVE);
-            one.covariance += seen * Matrix2::new(x * x, x * y, x * y, y * y);
+            let share = (x * x + y * y) / (x * x + y * y + noise).max(f64::MIN_POSITIVE);
+            one.covariance += share * Matrix2::new(x * x, x * y, x * y, y * y);
         }
     }
 }
@@ -42,7 +42,7 @@ fn laplacian(
         tracked[*other].map(|one| one.gradient)
     };
     let gradient = tracked[point]?.gradient;
-    // Beside a point that is not followed the difference is to this one.
+    // Where a neighbour is not followed, the difference is to the point itself.
     let slope = |dx: isize, dy: isize| {
         let (before, after) = (gradient_at(-dx, -dy), gradient_at(dx, dy));
         let steps = before.iter().chain(&after).count();

@@ -13,25 +13,24 @@ const SPECK: f64 = 1e-3;
 /// How far a smoothed line may lie from the one that replaces it, in pixels.
 const FAR: f64 = 0.25;
 
-/// So many sides of pixels before and behind a place are averaged: they smooth the steps of a line that is not along the pixels.
+/// Number of sides of pixels before and behind each one that are averaged with it: this smooths the steps of a line that is not along the
+/// pixels.
 const AROUND: usize = 4;
-
-type Place = [f64; 2];
 
 impl Region {
     /// Its edge as closed lines in pixels from the centre of the upper left one, y down: the outer one and those of its holes, straight
     /// where pixels only step along a line. Specks are left out.
-    pub fn edge(&self) -> Vec<Vec<Place>> {
+    pub fn edge(&self) -> Vec<Vec<[f64; 2]>> {
         let steps = self.steps();
         let lines = steps.iter().map(|line| straightened(&smoothed(line), FAR));
-        let mut lines: Vec<Vec<Place>> = lines.collect();
+        let mut lines: Vec<Vec<[f64; 2]>> = lines.collect();
         let largest = lines.iter().map(|line| area(line)).fold(0.0, f64::max);
         lines.retain(|line| line.len() > 2 && area(line) > SPECK * largest);
         lines
     }
 
     /// Closed lines along the sides between pixels inside and outside, from corner to corner.
-    fn steps(&self) -> Vec<Vec<Place>> {
+    fn steps(&self) -> Vec<Vec<[f64; 2]>> {
         let [width, height] = self.size();
         // Corners of pixels by their numbers; each side runs with the inside on its right.
         let mut next: BTreeMap<(usize, usize), Vec<(usize, usize)>> = BTreeMap::new();
@@ -66,12 +65,12 @@ impl Region {
     }
 }
 
-fn area(line: &[Place]) -> f64 {
+fn area(line: &[[f64; 2]]) -> f64 {
     polygon_area(line).abs()
 }
 
 /// The middles of the sides of a closed line, each the mean of those around; a corner between long straight sides stays where it is.
-fn smoothed(line: &[Place]) -> Vec<Place> {
+fn smoothed(line: &[[f64; 2]]) -> Vec<[f64; 2]> {
     let count = line.len();
     let at = |index: usize| line[index % count];
     let middle = |index: usize| [0, 1].map(|axis| 0.5 * (at(index)[axis] + at(index + 1)[axis]));

@@ -1,6 +1,4 @@
-//! The first image: its gradients, and the pixels that count.
-
-use rayon::prelude::*;
+//! The first image: its gradients, and its usable pixels.
 
 use super::filter::{gaussian, symmetric};
 use super::grey::GreyImage;
@@ -27,11 +25,11 @@ pub struct Reference {
     pub smooth: [GreyImage; 2],
     /// ⟨k̂, k⟩ of one component, in 1/pixel².
     pub overlap: f64,
-    /// Which pixels count.
+    /// Which pixels show the pattern: those of the specimen without dead and saturated ones.
     pub usable: Vec<bool>,
 }
 
-/// Standard deviations in pixels of the smoothing that is tried.
+/// Standard deviations in pixels of the smoothings that are tried.
 const SMOOTHING: [f64; 8] = [0.0, 0.5, 0.7, 1.0, 1.4, 2.0, 2.8, 4.0];
 
 fn smoothed(image: &GreyImage, deviation: f64) -> GreyImage {
@@ -55,45 +53,37 @@ fn overlap(deviation: f64) -> f64 {
     pairs.map(|(a, b)| f64::from(a * b)).sum()
 }
 
+/// The sum of the products of two gradients over the usable pixels.
+fn product(a: &[GreyImage; 2], b: &[GreyImage; 2], usable: &[bool]) -> f64 {
+    let sum = |axis: usize| -> f64 {
+        let pairs = a[axis].values().iter().zip(b[axis].values());
+        let pairs = pairs.zip(usable).filter(|(_, flag)| **flag);
+        pairs.map(|((a, b), _)| f64::from(a * b)).sum()
+    };
+    sum(0) + sum(1)
+}
+
 impl Reference {
-    /// Of an image, the pixels that count, and the noise.
+    /// Of an image, its usable pixels, and the noise.
     pub fn new(image: GreyImage, usable: Vec<bool>, noise: &Noise) -> Self {
         let gradient = Spline::new(&image).gradients();
         let count = usable.iter().filter(|flag| **flag).count().max(1) as f64;
         let counted = || usable.iter().zip(image.values()).filter(|(flag, _)| **flag);
         let mean = counted().map(|(_, value)| f64::from(*value)).sum::<f64>() / count;
         let total_noise = count * noise.variance(mean);
-        let product = |a: &[GreyImage; 2], b: &[GreyImage; 2]| -> f64 {
-            let sum = |axis: usize| -> f64 {
-                let pairs = a[axis]
-                    .values()
-                    .par_iter()
-                    .zip(b[axis].values())
-                    .zip(&usable);
-                let chunks = pairs
-                    .filter(|(_, flag)| **flag)
-                    .map(|((a, b), _)| f64::from(a * b));
-                // A sum in a fixed order.
-                chunks.collect::<Vec<f64>>().iter().sum()
-            };
-            sum(0) + sum(1)
-        };
         let tried = SMOOTHING.iter().map(|&deviation| {
             let smooth = [0, 1].map(|axis| smoothed(&gradient[axis], deviation));
             let overlap = overlap(deviation);
-            let signal = product(&smooth, &gradient) - 2.0 * total_noise * overlap;
+            let signal = product(&smooth, &gradient, &usable) - 2.0 * total_noise * overlap;
             let variance = if signal > 0.0 {
-                product(&smooth, &smooth) / signal.powi(2)
+                product(&smooth, &smooth, &usable) / signal.powi(2)
             } else {
                 f64::INFINITY
             };
             (variance, smooth, overlap)
         });
         let best = tried.min_by(|a, b| a.0.total_cmp(&b.0));
-        let (smooth, overlap) = best.map_or_else(
-            || (gradient.clone(), 0.0),
-            |(_, smooth, overlap)| (smooth, overlap),
-        );
+        let (_, smooth, overlap) = best.expect("smoothings are tried");
         Self {
             image,
             gradient,

@@ -1,4 +1,4 @@
-//! What the pixels of a subset give once for all: the matrices of the steps and of the covariance.
+//! The matrices of a subset that depend on the first image alone: those of the steps and of the covariance.
 
 use gelbench_mechanics::solve::vector::add_scaled;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
@@ -16,14 +16,20 @@ pub struct Pixel {
     pub slope: [f32; 2],
 }
 
-/// What the pixels of a subset give once for all.
+/// The sums over the pixels of a subset that depend on the first image alone, in the symbols of [`subset`](super::subset).
 #[derive(Clone, Debug)]
 pub struct Matrices {
+    /// The factor of A.
     pub step: Cholesky<f64, Dyn>,
+    /// Σ J⊥J⊥ᵀ.
     pub spread: DMatrix<f64>,
+    /// Σ J.
     pub sum: DVector<f64>,
+    /// Σ J Ĩ.
     pub weighted: DVector<f64>,
+    /// Σ I₀.
     pub value: f64,
+    /// Σ I₀².
     pub square: f64,
 }
 

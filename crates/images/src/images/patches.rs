@@ -1,8 +1,8 @@
 //! Patches that share no pixel: measurements whose errors are independent.
 //!
-//! Subsets overlap, so that their errors are correlated. About a field that is known already, each patch gives one more measurement of the
-//! displacement by the pixels of its own: the Gauss–Newton step of the images' misfit about this field, with its covariance. Least squares over
-//! patches are then those over pixels,
+//! Subsets overlap, so that their errors are correlated. Once a field is known, each patch measures the displacement anew by pixels that no
+//! other patch has: by the Gauss–Newton step of the images' misfit about this field, with its covariance. Least squares over patches are then
+//! those over pixels,
 //!
 //! ```text
 //! Σ (I₀ − a − b I₁(X + u))² ≈ const + Σ_patches (u − û)ᵀ A (u − û),   û: the displacement that a patch measures
@@ -18,8 +18,8 @@ use super::subset::Subset;
 use super::track::Tracker;
 use super::warp::Warp;
 
-/// Standard deviation of a displacement in speckles below which a patch is searched for; beyond it noise leads a search astray, and the step that is
-/// linear about the field counts.
+/// Standard deviation of a displacement in speckles below which a patch is searched for; above it noise leads a search astray, and a single
+/// step, linear about the field, is taken.
 const PRECISE: f64 = 1.0 / 32.0;
 
 /// The patches of a first image.
@@ -48,29 +48,31 @@ impl Patches<'_> {
 
     /// Whether the noise moves most patches by so little that each leads to its displacement by itself.
     pub fn are_precise(&self) -> bool {
-        let Tracker {
-            reference, noise, ..
-        } = self.tracker;
-        let is_precise = |number: &usize| {
-            let point = self.tracker.grid.points[*number];
-            let patch = Subset::patch(reference, point, self.layout.width, noise);
-            patch.is_some_and(|patch| self.is_precise(&patch))
+        let is_precise = |number: usize| {
+            self.patch(number)
+                .is_some_and(|patch| self.is_precise(&patch))
         };
-        let precise = self
-            .layout
-            .points
-            .par_iter()
-            .copied()
-            .filter(is_precise)
-            .count();
+        let points = self.layout.points.par_iter();
+        let precise = points.filter(|number| is_precise(**number)).count();
         2 * precise > self.layout.points.len()
+    }
+
+    /// The patch about a point of the grid.
+    fn patch(&self, number: usize) -> Option<Subset> {
+        let Tracker {
+            reference,
+            grid,
+            noise,
+            ..
+        } = self.tracker;
+        Subset::patch(reference, grid.points[number], self.layout.width, noise)
     }
 
     fn is_precise(&self, patch: &Subset) -> bool {
         patch.expected_deviation() < PRECISE * self.layout.speckle
     }
 
-    /// A later image as it is measured in.
+    /// A later image in the form in which [`Self::measure`] takes it.
     pub fn spline(&self, image: &GreyImage) -> Spline {
         Spline::new(&self.tracker.repaired(image))
     }
@@ -82,10 +84,8 @@ impl Patches<'_> {
         spline: &Spline,
         about: &(dyn Fn(usize) -> Option<Warp> + Sync),
     ) -> Vec<Option<Tracked>> {
-        let measured = self.layout.points.par_iter().map(|&number| {
-            let guess = about(number)?;
-            self.measure_one(spline, self.tracker.grid.points[number], guess)
-        });
+        let points = self.layout.points.par_iter();
+        let measured = points.map(|&number| self.measure_one(spline, number, about(number)?));
         let measured: Vec<Option<Tracked>> = measured.collect();
         let mut all = vec![None; self.tracker.grid.points.len()];
         for (number, one) in self.layout.points.iter().zip(measured) {
@@ -94,12 +94,10 @@ impl Patches<'_> {
         all
     }
 
-    fn measure_one(&self, spline: &Spline, point: [usize; 2], guess: Warp) -> Option<Tracked> {
-        let Tracker {
-            reference, noise, ..
-        } = self.tracker;
-        let patch = Subset::patch(reference, point, self.layout.width, noise)?;
-        let middle = patch.middle();
+    fn measure_one(&self, spline: &Spline, number: usize, guess: Warp) -> Option<Tracked> {
+        let Tracker { grid, noise, .. } = self.tracker;
+        let patch = self.patch(number)?;
+        let (middle, point) = (patch.middle(), grid.points[number]);
         let fit = if self.is_precise(&patch) {
             patch.find(spline, guess, noise)?
         } else {

@@ -30,7 +30,7 @@ pub fn half_width(reference: &Reference, grid: &Grid, order: Order, noise: &Nois
     half
 }
 
-/// Where patches are that share no pixel.
+/// The size and the positions of patches that share no pixel.
 #[derive(Clone, Debug)]
 pub struct PatchLayout {
     /// Width of a patch in pixels.
@@ -86,7 +86,7 @@ fn patch_steps(
     steps
 }
 
-/// The standard deviation in pixels that a quarter of the points fall below.
+/// The standard deviation in pixels below which those of a quarter of the points are.
 fn typical(grid: &Grid, subset: &(dyn Fn([usize; 2]) -> Option<Subset> + Sync)) -> f64 {
     const SAMPLE: usize = 200;
     let every = (grid.points.len() / SAMPLE).max(1);
@@ -109,6 +109,7 @@ fn speckle(reference: &Reference, noise: &Noise) -> f64 {
     /// Standard deviation in pixels of what counts as an area.
     const AREA: f64 = 16.0;
     let [width, height] = reference.image.size();
+    let lags = MOST.min(width.min(height) / 2);
     let areas = symmetric(&reference.image, &gaussian(AREA));
     let pairs = reference.image.values().iter().zip(areas.values());
     let values: Vec<f32> = pairs.map(|(value, area)| value - area).collect();
@@ -118,36 +119,42 @@ fn speckle(reference: &Reference, noise: &Noise) -> f64 {
         .map(|area| f64::from(*area))
         .sum::<f64>()
         / values.len() as f64;
-    let along = |step: usize| -> Vec<f64> {
-        let product = |lag: usize| {
-            let last = values.len().saturating_sub(lag * step);
-            let (mut sum, mut count, mut sums) = (0.0, 0.0, [0.0; 2]);
-            for at in 0..last {
-                if reference.usable[at] && reference.usable[at + lag * step] {
-                    let pair = [f64::from(values[at]), f64::from(values[at + lag * step])];
-                    (sum, count) = (sum + pair[0] * pair[1], count + 1.0);
-                    sums = [sums[0] + pair[0], sums[1] + pair[1]];
-                }
-            }
-            let of_noise = if lag == 0 { noise.variance(mean) } else { 0.0 };
-            sum / count - sums[0] * sums[1] / (count * count) - of_noise
-        };
-        (0..MOST.min(width.min(height) / 2)).map(product).collect()
+    let width_along = |step: usize| {
+        let mut covariances: Vec<f64> = (0..lags)
+            .map(|lag| covariance(&values, &reference.usable, lag * step))
+            .collect();
+        covariances[0] -= noise.variance(mean);
+        width_at_half_height(&covariances)
     };
-    let half_height = |products: Vec<f64>| {
-        let level = 0.5 * products[0];
-        let below = products
-            .iter()
-            .position(|product| *product < level)
-            .unwrap_or(products.len() - 1)
-            .max(1);
-        let (high, low) = (products[below - 1], products[below]);
-        let part = if high > low {
-            ((high - level) / (high - low)).clamp(0.0, 1.0)
-        } else {
-            1.0
-        };
-        2.0 * ((below - 1) as f64 + part)
+    0.5 * (width_along(1) + width_along(width))
+}
+
+/// The covariance of the usable values with those that stand `shift` behind them.
+fn covariance(values: &[f32], usable: &[bool], shift: usize) -> f64 {
+    let (mut sum, mut count, mut sums) = (0.0, 0.0, [0.0; 2]);
+    for at in 0..values.len().saturating_sub(shift) {
+        if usable[at] && usable[at + shift] {
+            let pair = [values[at], values[at + shift]].map(f64::from);
+            (sum, count) = (sum + pair[0] * pair[1], count + 1.0);
+            sums = [sums[0] + pair[0], sums[1] + pair[1]];
+        }
+    }
+    sum / count - sums[0] * sums[1] / (count * count)
+}
+
+/// The width at half height of a function that is even, from its values at 0, 1, 2 …
+fn width_at_half_height(values: &[f64]) -> f64 {
+    let level = 0.5 * values[0];
+    let below = values
+        .iter()
+        .position(|value| *value < level)
+        .unwrap_or(values.len() - 1)
+        .max(1);
+    let (high, low) = (values[below - 1], values[below]);
+    let part = if high > low {
+        ((high - level) / (high - low)).clamp(0.0, 1.0)
+    } else {
+        1.0
     };
-    0.5 * (half_height(along(1)) + half_height(along(width)))
+    2.0 * ((below - 1) as f64 + part)
 }

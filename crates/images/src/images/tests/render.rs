@@ -17,8 +17,6 @@ pub struct Camera {
     pub photons: bool,
     /// Light at the left and at the right rim.
     pub light: [f64; 2],
-    /// Whether values are rounded to 8 bit.
-    pub rounded: bool,
     pub seed: u64,
 }
 
@@ -29,12 +27,11 @@ impl Camera {
             noise,
             photons: false,
             light: [1.0, 1.0],
-            rounded: true,
             seed,
         }
     }
 
-    /// A frame: `material` gives the material point that is seen at a place. Pixels integrate over their area by four points.
+    /// A frame of 8 bit: `material` gives the material point that is seen at a position. Pixels integrate over their area by four points.
     pub fn frame(
         &self,
         pattern: &Pattern,
@@ -59,12 +56,7 @@ impl Camera {
                     } else {
                         self.noise
                     };
-                    let value = 255.0 * (value + size * noise);
-                    (if self.rounded {
-                        value.round().clamp(0.0, 255.0)
-                    } else {
-                        value
-                    }) as f32
+                    (255.0 * (value + size * noise)).round().clamp(0.0, 255.0) as f32
                 };
                 (0..width).map(pixel).collect()
             })
