@@ -42,7 +42,7 @@ pub struct ImageRequest<'a> {
     pub settings: &'a ImageSettings,
     /// The specimen's edge in mm, as a table of lines.
     pub outline: Option<&'a Path>,
-    /// What it may ask for.
+    /// The memory that it may use.
     pub budget: Budget,
 }
 
@@ -54,16 +54,14 @@ type NumberedFiles = Vec<(usize, ImageFile)>;
 pub struct TrackedImages {
     /// The first image's pattern.
     pub tracker: Tracker,
-    /// The first image, and the later ones with the numbers of their frames.
-    pub files: (ImageFile, NumberedFiles),
+    /// The images after the first one with the numbers of their frames.
+    pub files: NumberedFiles,
     /// The points in each frame.
     pub frames: Vec<(usize, Vec<Option<Tracked>>)>,
     /// The same in mm.
     pub series: MarkerSeries,
     /// Patches that share no pixel, in mm: their errors are independent.
     pub patches: MarkerSeries,
-    /// Width of a patch in pixels.
-    pub patch: usize,
     /// The length of a pixel in mm.
     pub pixel: f64,
     /// How they were followed.
@@ -72,11 +70,11 @@ pub struct TrackedImages {
     pub warnings: Vec<Diagnostic>,
 }
 
-/// Memory of a pixel while images are followed, in bytes: grey values, splines, gradients and their smoothed ones.
+/// Memory per pixel while images are followed, in bytes: for grey values, splines, gradients and smoothed gradients.
 const BYTES_OF_A_PIXEL: f64 = 120.0;
 
-/// How far the mean strain of the pattern may be from that of its points' displacements, and more for each part of it: both differ a little where
-/// strain varies and points are lost.
+/// The largest difference between the mean strain of the pattern and that of its points' displacements which is no contradiction: a constant, and
+/// a share of the strain. Both differ a little where strain varies and points are lost.
 const APART: [f64; 2] = [0.03, 0.1];
 
 /// The mean ∂ux/∂X and ∂uy/∂Y of the pattern about its points.
@@ -89,7 +87,7 @@ fn mean_strains(points: &[Option<Tracked>]) -> Option<[f64; 2]> {
     (!followed.is_empty()).then(|| [mean(0), mean(1)])
 }
 
-/// How far an outline may reach beyond the images, over their longer side.
+/// The largest distance by which an outline may reach beyond the images, over their longer side.
 const BEYOND: f64 = 0.02;
 
 /// The layout of markers that were followed in images.
@@ -150,10 +148,9 @@ impl ImageRequest<'_> {
         let (series, patches) = (in_mm(&frames), in_mm(&patches));
         Ok(TrackedImages {
             series,
-            patch: tracker.patches().width(),
             patches,
             tracker,
-            files: (first.clone(), numbered),
+            files: numbered,
             frames,
             pixel,
             settings,
@@ -202,7 +199,7 @@ impl ImageRequest<'_> {
     }
 }
 
-/// How far lines in pixels reach beyond images of a size, in words, where that is more than a hand errs.
+/// A message that says how far lines in pixels reach beyond images of a size, where that is more than an outline by hand is off.
 fn beyond(lines: &[Vec<[f64; 2]>], size: [usize; 2], pixel: f64) -> Option<String> {
     let last = size.map(|length| (length - 1) as f64);
     let along =
@@ -277,7 +274,7 @@ fn left_out(fault: Diagnostic, number: usize) -> Diagnostic {
     Diagnostic::warning("", message).hint(fault.hint.unwrap_or_default())
 }
 
-/// The numbers at the ends of the files' names where all have one of their own, else 1, 2, 3 …
+/// The numbers at the ends of the files' names where all have one and they increase, else 1, 2, 3 …
 fn numbers(files: &[ImageFile]) -> Vec<usize> {
     let number = |file: &ImageFile| {
         let stem = file.path.file_stem()?.to_string_lossy().into_owned();
@@ -294,9 +291,10 @@ fn numbers(files: &[ImageFile]) -> Vec<usize> {
 impl TrackedImages {
     /// The patches as if they had been read from a file.
     pub fn markers(&self) -> MarkerFiles {
+        let width = self.tracker.patches().width() as f64;
         let subset = Subset {
-            size: self.patch as f64,
-            step: self.patch as f64,
+            size: width,
+            step: width,
             source: "the tracking of the images".to_owned(),
         };
         MarkerFiles {
@@ -337,7 +335,15 @@ impl TrackedImages {
         Some(Diagnostic::warning("", message).hint(hint))
     }
 
-    /// The number of points that are followed at all.
+    /// The image of a frame.
+    pub fn file(&self, frame: usize) -> Option<&ImageFile> {
+        let mut files = self.files.iter();
+        files
+            .find(|(number, _)| *number == frame)
+            .map(|(_, file)| file)
+    }
+
+    /// The number of points of the grid.
     pub fn points(&self) -> usize {
         self.tracker.positions().len()
     }

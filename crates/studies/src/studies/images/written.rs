@@ -12,6 +12,7 @@ use serde_json::{Map, json};
 
 use super::TrackedImages;
 use crate::error::Diagnostic;
+use crate::images::ImageFile;
 use crate::markers::{Frame, Marker};
 use crate::results::{
     Block, Content, FieldFigure, Figure, Finding, Outcome, Panel, Results, Step, Table, object,
@@ -66,7 +67,7 @@ pub fn results(tracked: &TrackedImages, name: String, seconds: f64) -> Results {
     }
 }
 
-/// The markers of all frames; those that were found in none have a place alone.
+/// The markers of all frames.
 fn table(tracked: &TrackedImages) -> String {
     let mut text = String::from("frame,id,x [mm],y [mm],ux [mm],uy [mm],standard_deviation [mm]\n");
     let length = |value: f64| format!("{value:.7}");
@@ -118,7 +119,10 @@ fn stretches(frame: &Frame) -> [f64; 2] {
 fn frames(tracked: &TrackedImages) -> Table<&Frame> {
     Table::of(&tracked.series.frames)
         .column("frame", |frame| frame.number.to_string())
-        .column("image", |frame| image(tracked, frame))
+        .column("image", |frame| {
+            let file = tracked.file(frame.number);
+            file.map_or_else(String::new, ImageFile::name)
+        })
         .column("points", |frame| frame.markers.len().to_string())
         .column("largest displacement [mm]", |frame| number(largest(frame)))
         .column("mean stretch along x", |frame| {
@@ -130,13 +134,6 @@ fn frames(tracked: &TrackedImages) -> Table<&Frame> {
         .column("standard deviation [pixels]", |frame| {
             number(deviation(tracked, frame))
         })
-}
-
-/// The name of a frame's image.
-fn image(tracked: &TrackedImages, frame: &Frame) -> String {
-    let mut files = tracked.files.1.iter();
-    let file = files.find(|(number, _)| *number == frame.number);
-    file.map_or_else(String::new, |(_, file)| file.name())
 }
 
 fn words(tracked: &TrackedImages) -> String {

@@ -136,9 +136,7 @@ impl ImageMisfit<'_> {
 
     /// The patches about a field, about the field that is nearest to these, and so on until they stay.
     fn settled(&self, frame: &Frame, mut displacement: Vec<f64>) -> Option<Measured> {
-        let mut files = self.images.files.1.iter();
-        let (_, file) = files.find(|(number, _)| *number == frame.number)?;
-        let image = file.read().ok()?;
+        let image = self.images.file(frame.number)?.read().ok()?;
         let (spline, pixel) = (self.patches.spline(&image), self.images.pixel);
         let (mut frame, mut similarity) = (frame.clone(), 0.0);
         for _ in 0..MOST {

@@ -36,15 +36,6 @@ pub struct JointStudy {
     pub settings: JointSettings,
 }
 
-/// A law and its result.
-#[derive(Debug)]
-pub struct JudgedLaw {
-    /// The card with its first values.
-    pub card: usize,
-    /// The estimate, or why there is none.
-    pub estimate: Result<JointEstimate, Error>,
-}
-
 /// The results of all laws.
 #[derive(Debug)]
 pub struct JointResults {
@@ -52,8 +43,8 @@ pub struct JointResults {
     pub estimate: JointEstimate,
     /// Its card with the estimated values.
     pub card: Card,
-    /// The other laws.
-    pub others: Vec<JudgedLaw>,
+    /// The estimates of the other laws in the order of their cards, or why there is none.
+    pub others: Vec<Result<JointEstimate, Error>>,
 }
 
 /// A specimen that was corrected with the estimated law.
@@ -118,13 +109,9 @@ impl JointStudy {
             })
         };
         let estimate = of(0)?;
-        let others = (1..self.cards.len()).map(|card| JudgedLaw {
-            card,
-            estimate: of(card),
-        });
         Ok(JointResults {
             card: card::with_values(&self.cards[0], &estimate, &self.specimen_words())?,
-            others: others.collect(),
+            others: (1..self.cards.len()).map(of).collect(),
             estimate,
         })
     }
@@ -142,7 +129,7 @@ impl JointStudy {
         studies.flat_map(MarkerStudy::joint_frames).collect()
     }
 
-    /// The specimens in words.
+    /// The names of the specimens with the numbers of their frames.
     fn specimen_words(&self) -> String {
         let words = |(name, study): &NamedSpecimen| match study.series.frames.len() {
             1 => format!("{name} (1 frame)"),
@@ -171,7 +158,7 @@ impl MarkerStudy {
             .collect()
     }
 
-    /// The same with another card, whose law stays as it is and is compared with the forces.
+    /// The study with another card, whose law is not regressed; forces are only compared with those of the field.
     #[must_use]
     pub fn with_card(&self, card: &Card) -> Self {
         let mut other = Self {
@@ -186,7 +173,7 @@ impl MarkerStudy {
     }
 }
 
-/// The uncertainties included in the intervals of a field whose law was estimated with other fields.
+/// The warning that the intervals of a field, whose law was estimated from several fields, do not include the law's uncertainty.
 pub fn given_the_law() -> Diagnostic {
     let message = "intervals of displacements, stresses and forces apply to the estimated parameter values: the uncertainty of the parameters is not included";
     Diagnostic::warning("", message).hint("where a parameter scales the stress, add its relative interval to those of forces and stresses")

@@ -207,19 +207,20 @@ pub fn blocks(study: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> {
         let as_it_is = estimate
             .verdict
             .residual_rms
-            .map(|rms| ["as it is".to_owned(), decimals(rms, 5), String::new()]);
+            .map(|rms| vec!["as it is".to_owned(), decimals(rms, 5), String::new()]);
         let trials = estimate.verdict.trials.iter().map(|trial| {
-            [
+            vec![
                 trial_words(study, trial),
                 residual(trial.residual_rms).unwrap_or_default(),
                 format!("{:.1e}", trial.probability),
             ]
         });
-        let table = Table::of(as_it_is.into_iter().chain(trials))
-            .column("alternative", |[words, ..]| words.clone())
-            .column("residual without outliers [mm]", |[_, rms, _]| rms.clone())
-            .column("probability", |[.., probability]| probability.clone());
-        blocks.push(table.block());
+        let head = [
+            "alternative",
+            "residual without outliers [mm]",
+            "probability",
+        ];
+        blocks.push(Block::table(&head, as_it_is.into_iter().chain(trials)));
     }
     blocks
 }

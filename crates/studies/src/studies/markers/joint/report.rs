@@ -1,8 +1,11 @@
 //! The report on parameters that were estimated with all frames together.
 
+use std::iter;
+
 use super::{CorrectedSpecimen, JointResults, JointStudy};
 use crate::error::Error;
 use crate::estimation::{Direction, FieldEstimate, ForcePrediction, JointEstimate, VAGUE};
+use crate::material::Card;
 use crate::results::{Block, Table, or_dash};
 use crate::statistics::Estimate;
 use crate::studies::markers::report::interval;
@@ -25,13 +28,24 @@ pub fn forces<'a>(study: &'a JointStudy, estimate: &'a JointEstimate) -> Vec<For
         .collect()
 }
 
+/// A table with a row for each force, so far with where it was measured.
+pub fn force_table<'a>(rows: &'a [ForceRow<'a>]) -> Table<&'a ForceRow<'a>> {
+    Table::of(rows)
+        .column("specimen", |(name, ..)| (*name).to_owned())
+        .column("frame", |(_, frame, _)| frame.to_string())
+        .column("edge", |(.., force)| force.measured.edge.clone())
+        .column("axis", |(.., force)| {
+            ["x", "y"][force.measured.axis].to_owned()
+        })
+}
+
 /// Whether the search has converged, and every frame of every specimen is explained with the estimated law, so that intervals are valid.
 pub fn is_explained(joint: &JointResults, specimens: &[CorrectedSpecimen]) -> bool {
     let mut all = specimens.iter().flat_map(|specimen| &specimen.estimates);
     joint.estimate.ended.is_none() && all.all(FieldEstimate::is_explained)
 }
 
-/// For the terminal.
+/// The estimated parameters and the ranking of the laws, for the terminal.
 pub fn summary(
     study: &JointStudy,
     joint: &JointResults,
@@ -138,13 +152,10 @@ pub struct RankedLaw {
 
 /// The laws, the one that predicts the forces left out best first.
 pub fn ranked(study: &JointStudy, joint: &JointResults) -> Vec<RankedLaw> {
-    let others = joint.others.iter();
-    let others = others.map(|other| (other.card, other.estimate.as_ref()));
-    let all: Vec<(usize, Result<&JointEstimate, &Error>)> = [(0, Ok(&joint.estimate))]
-        .into_iter()
-        .chain(others)
-        .collect();
-    let estimates = all.iter().filter_map(|(_, estimate)| estimate.ok());
+    let others = joint.others.iter().map(Result::as_ref);
+    let all: Vec<Result<&JointEstimate, &Error>> =
+        iter::once(Ok(&joint.estimate)).chain(others).collect();
+    let estimates = all.iter().filter_map(|estimate| estimate.ok());
     let criteria = estimates.map(JointEstimate::information_criterion);
     let least = criteria.fold(f64::INFINITY, f64::min);
     let figures = |estimate: &JointEstimate| {
@@ -157,13 +168,13 @@ pub fn ranked(study: &JointStudy, joint: &JointResults) -> Vec<RankedLaw> {
         let above = estimate.information_criterion() - least;
         [100.0 * error, square.sqrt(), above]
     };
-    let row = |(card, estimate): &(usize, Result<&JointEstimate, &Error>)| RankedLaw {
-        name: study.cards[*card].name.clone(),
+    let row = |(card, estimate): (&Card, &Result<&JointEstimate, &Error>)| RankedLaw {
+        name: card.name.clone(),
         parameters: estimate.map_or(0, |estimate| estimate.parameters.len()),
         figures: estimate.ok().map(figures),
         fault: estimate.err().map_or(String::new(), ToString::to_string),
     };
-    let mut rows: Vec<RankedLaw> = all.iter().map(row).collect();
+    let mut rows: Vec<RankedLaw> = study.cards.iter().zip(&all).map(row).collect();
     let order = |row: &RankedLaw| {
         let [error, _, criterion] = row.figures.unwrap_or([f64::INFINITY; 3]);
         if error.is_finite() { error } else { criterion }
@@ -270,13 +281,8 @@ fn predictions(study: &JointStudy, joint: &JointResults) -> [Block; 3] {
         let predicted = force.predicted?;
         Some(100.0 * (predicted / force.measured.force - 1.0))
     };
-    let table = Table::of(forces(study, &joint.estimate))
-        .column("specimen", |(name, ..)| (*name).to_owned())
-        .column("frame", |(_, frame, _)| frame.to_string())
-        .column("edge", |(.., force)| force.measured.edge.clone())
-        .column("axis", |(.., force)| {
-            ["x", "y"][force.measured.axis].to_owned()
-        })
+    let rows = forces(study, &joint.estimate);
+    let table = force_table(&rows)
         .column("measured force [N]", |(.., force)| {
             decimals(force.measured.force, 6)
         })

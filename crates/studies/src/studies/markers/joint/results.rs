@@ -6,8 +6,7 @@ use super::report::{self, ForceRow};
 use super::{CorrectedSpecimen, JointResults, JointStudy, card};
 use crate::estimation::{ForceScatter, JointEstimate};
 use crate::results::{
-    Content, Figure, Finding, Line, LineChart, Material, Outcome, PALETTE, Results, Stroke, Table,
-    object,
+    Content, Figure, Finding, Line, LineChart, Material, Outcome, PALETTE, Results, Stroke, object,
 };
 use crate::statistics::{extremes, larger};
 use crate::studies::markers::json::of_estimate;
@@ -111,7 +110,7 @@ fn doubt(specimen: &CorrectedSpecimen) -> Option<String> {
     }
 }
 
-/// For machines.
+/// The figures for machines.
 fn problem(
     study: &JointStudy,
     joint: &JointResults,
@@ -174,13 +173,7 @@ fn problem(
 }
 
 fn table(rows: &[ForceRow]) -> String {
-    Table::of(rows)
-        .column("specimen", |(name, ..)| (*name).to_owned())
-        .column("frame", |(_, frame, _)| frame.to_string())
-        .column("edge", |(.., force)| force.measured.edge.clone())
-        .column("axis", |(.., force)| {
-            ["x", "y"][force.measured.axis].to_owned()
-        })
+    report::force_table(rows)
         .column("measured_force [N]", |(.., force)| {
             force.measured.force.to_string()
         })
