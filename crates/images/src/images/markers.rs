@@ -18,8 +18,6 @@ pub fn series(frames: &[(usize, Vec<Option<Tracked>>)], height: usize, pixel: f6
         })
     };
     MarkerSeries {
-        lost: Vec::new(),
-        at_rest: Vec::new(),
         frames: frames
             .iter()
             .map(|(number, all)| Frame {
@@ -28,5 +26,6 @@ pub fn series(frames: &[(usize, Vec<Option<Tracked>>)], height: usize, pixel: f6
                 markers: all.iter().enumerate().filter_map(marker).collect(),
             })
             .collect(),
+        ..MarkerSeries::default()
     }
 }

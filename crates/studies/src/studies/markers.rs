@@ -33,7 +33,6 @@ mod forces;
 mod gross_errors;
 mod headline;
 mod image_misfit;
-mod images;
 pub mod joint;
 mod json;
 mod machine;
@@ -54,7 +53,7 @@ pub mod written;
 
 pub use alike::ComparedFrames;
 pub use area::Area;
-pub use conditions::{Conditions, EdgesByName, TEMPLATE, measured_force};
+pub use conditions::{Conditions, TEMPLATE, measured_force};
 use finding::once;
 pub(super) use headline::mistaken;
 pub use machine::{ForceColumn, FrameForces};
@@ -143,10 +142,10 @@ impl MarkerStudy {
         watch: &dyn Fn(&str),
     ) -> Result<Self, Error> {
         let (card, regions) = materials::in_common_plane(card, &mut request.conditions)?;
-        let (mut field, images) = images::read_field(&request, watch)?;
+        let (mut field, images) = request.read_field(watch)?;
         let table = request.forces.as_deref();
-        let force_warnings = request.conditions.take_forces(table, &field.series)?;
-        field.warnings.extend(force_warnings);
+        let force_warning = request.conditions.take_forces(table, &field.series)?;
+        field.warnings.extend(force_warning);
         let specimen_mesh = mesh(&request, &field)?;
         let (mut mesh, mut warnings) = (specimen_mesh.mesh, specimen_mesh.warnings);
         let edges = request.conditions.edges.iter();

@@ -1,26 +1,27 @@
 //! Whether the residuals of the markers are alike from frame to frame, as a misfit is and the noise of single pictures is not.
 //!
-//! The noise of the picture at rest is common to all frames: where it is as large as that of the others, what is left of two
-//! frames correlates by ½. A correlation beyond 0.8 would take a picture at rest with twice their noise; beside a frame that is
-//! known to be not explained, ½ is enough to say that the misfit is the same.
+//! The noise of the picture at rest is common to all frames: where it is as large as that of the other pictures, the residuals of two
+//! frames correlate by ½. A correlation above 0.8 would take a picture at rest with twice their noise. Where one of the two frames is
+//! not explained by itself, a correlation above ½ is enough to say that both have the same misfit.
 
 use std::collections::BTreeMap;
 
+use super::quantities::sound;
 use crate::estimation::{Answer, FieldEstimate, Reason, residual_products};
 use crate::markers::Frame;
 use crate::statistics::normal_tail;
 
-/// The largest correlation that is laid to the picture at rest: where both frames would be explained by themselves, and where one
-/// is not.
+/// The largest correlation that is attributed to the picture at rest: where both frames would be explained by themselves, and where
+/// one is not.
 const COMMON: [f64; 2] = [0.8, 0.5];
 
-/// The probability by noise below which what is left is too much alike.
+/// The probability by noise below which residuals are too much alike.
 const LEVEL: f64 = 1e-4;
 
-/// Fewer independent values tell nothing.
+/// The least number of independent values from which a correlation is judged.
 const FEWEST: f64 = 6.0;
 
-/// Estimates of frames one after the other, each compared with the one before.
+/// Estimates of frames in their order, each compared with the one before.
 #[derive(Default)]
 pub struct ComparedFrames<'a> {
     frames: Vec<&'a Frame>,
@@ -55,7 +56,7 @@ impl<'a> ComparedFrames<'a> {
     }
 }
 
-/// Two frames whose noise correlates between neighbours are not explained where what is left of them is alike.
+/// Refutes two frames whose noise correlates between neighbours where their residuals are alike.
 fn compare(frames: [&Frame; 2], estimates: [&mut FieldEstimate; 2]) {
     let [before, after] = &estimates;
     let (Some(of_a), Some(of_b)) = (before.verdict.correlation, after.verdict.correlation) else {
@@ -79,8 +80,8 @@ fn compare(frames: [&Frame; 2], estimates: [&mut FieldEstimate; 2]) {
     }
 }
 
-/// How probable it is that so many independent pairs of numbers that correlate by no more than `common` have such a
-/// correlation: Fisher's transformation.
+/// The probability of such a correlation among so many independent pairs of numbers whose true correlation is at most `common`, by Fisher's
+/// transformation.
 fn probability(correlation: f64, common: f64, pairs: f64) -> f64 {
     if pairs < FEWEST || correlation <= common {
         return 1.0;
@@ -91,7 +92,7 @@ fn probability(correlation: f64, common: f64, pairs: f64) -> f64 {
 
 /// The correlation of the residuals of the markers that are sound in both frames; zero where there is none.
 fn correlation(before: (&Frame, &FieldEstimate), after: (&Frame, &FieldEstimate)) -> f64 {
-    let [ab, aa, bb] = residual_products(&sound(before), &sound(after));
+    let [ab, aa, bb] = residual_products(&residuals(before), &residuals(after));
     if aa * bb > 0.0 {
         ab / (aa * bb).sqrt()
     } else {
@@ -99,13 +100,12 @@ fn correlation(before: (&Frame, &FieldEstimate), after: (&Frame, &FieldEstimate)
     }
 }
 
-fn sound((frame, estimate): (&Frame, &FieldEstimate)) -> BTreeMap<usize, [f64; 2]> {
-    let markers = frame.markers.iter().zip(&estimate.markers);
-    let sound = markers.filter_map(|(marker, estimate)| {
-        let estimate = estimate.filter(|estimate| !estimate.outlier)?;
-        Some((marker.number, estimate.residual))
-    });
-    sound.collect()
+/// The residuals of the sound markers by the numbers of these.
+fn residuals((frame, estimate): (&Frame, &FieldEstimate)) -> BTreeMap<usize, [f64; 2]> {
+    let markers = sound(frame, estimate);
+    markers
+        .map(|(_, marker, residual)| (marker.number, residual))
+        .collect()
 }
 
 #[cfg(test)]
@@ -134,7 +134,7 @@ mod tests {
         }
     }
 
-    /// A frame of which so much is left, with noise that correlates between neighbours.
+    /// A frame with such residuals, and noise that correlates between neighbours.
     fn estimated(residuals: &[[f64; 2]]) -> FieldEstimate {
         let marker = |residual: &[f64; 2]| {
             Some(MarkerEstimate {

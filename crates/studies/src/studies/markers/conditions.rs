@@ -13,16 +13,13 @@ use crate::markers::MarkerSeries;
 use crate::material::{Card, PlaneState};
 use crate::mesh::Mesh;
 
-/// An edge by its name, with what is known of it.
-pub type EdgesByName = Vec<(String, EdgeCondition)>;
-
 /// What is known besides the displacements.
 #[derive(Clone, Debug, Default)]
 pub struct Conditions {
     /// Heading of the report; empty where it is not given.
     pub title: String,
-    /// The edges.
-    pub edges: EdgesByName,
+    /// The edges by their names, with what is known of them.
+    pub edges: Vec<(String, EdgeCondition)>,
     /// Pads on the sheet by their names.
     pub areas: Vec<(String, Area)>,
     /// Standard deviation of each component of the displacement in mm.
@@ -80,7 +77,7 @@ impl Conditions {
     ///
     /// # Errors
     /// [`Error::Input`] with every name that is wrong.
-    pub fn check(&self, mesh: &Mesh) -> Result<(), Error> {
+    fn check(&self, mesh: &Mesh) -> Result<(), Error> {
         let known: Vec<&str> = mesh.groups().keys().map(String::as_str).collect();
         let mut faults = Vec::new();
         for (index, (name, _)) in self.edges.iter().enumerate() {
@@ -148,7 +145,7 @@ impl Conditions {
         Err(Error::input(fault, hint))
     }
 
-    /// Takes the forces of a testing machine's table; returns what deserves attention.
+    /// Takes the forces of a testing machine's table; returns a warning about frames without one.
     ///
     /// # Errors
     /// As [`machine::forces`]; [`Error::Input`] when columns are named and there is no table.
@@ -156,9 +153,9 @@ impl Conditions {
         &mut self,
         table: Option<&Path>,
         series: &MarkerSeries,
-    ) -> Result<Vec<Diagnostic>, Error> {
+    ) -> Result<Option<Diagnostic>, Error> {
         match (table, self.force_columns.first()) {
-            (None, None) => Ok(Vec::new()),
+            (None, None) => Ok(None),
             (None, Some(first)) => Err(Error::input(
                 format!(
                     "the force on `{}` is to be read from the column `{}`, but no table is given",
@@ -167,10 +164,10 @@ impl Conditions {
                 "name the testing machine's table with --forces FILE",
             )),
             (Some(path), _) => {
-                let (forces, warnings) =
+                let (forces, warning) =
                     machine::forces(path, &self.force_columns, (series, self.clock))?;
                 self.forces.extend(forces);
-                Ok(warnings)
+                Ok(warning)
             }
         }
     }

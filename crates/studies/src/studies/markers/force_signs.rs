@@ -8,12 +8,12 @@ use crate::material::HyperelasticLaw;
 use crate::material::sheet::{Kinematics, PlaneTensor};
 use crate::mesh::Mesh;
 
-/// Components of the mean stress that are smaller than this part of the largest show nothing.
+/// Components of the mean stress that are smaller than this part of the largest do not determine a sign.
 const CLEAR: f64 = 0.5;
 
-/// Refuses forces with the sign of a push where the mean strain of their frame pulls, or the other way round: the mean stress of the
-/// markers' best linear field has a component along the force that is clearly the largest, and acts on an edge that lies
-/// clearly on one side of the specimen along that axis.
+/// Refuses forces that push where the mean strain of their frame is that of a pull, or the other way round. This is judged where the mean stress,
+/// that of the linear field nearest to the markers, has a large component along the force, and where the edge of the force lies at one end of
+/// the specimen along that axis.
 ///
 /// # Errors
 /// [`Error::Input`] with every such force.
@@ -35,14 +35,12 @@ pub fn check(
 
 fn wrong_sign(force: &MeasuredForce, expected: f64) -> Diagnostic {
     let (edge, axis) = (&force.edge, ["x", "y"][force.axis]);
-    let (size, [sign, side]) = (
-        force.force.abs(),
-        if expected < 0.0 {
-            ["-", "-"]
-        } else {
-            ["", "+"]
-        },
-    );
+    let size = force.force.abs();
+    let [sign, side] = if expected < 0.0 {
+        ["-", "-"]
+    } else {
+        ["", "+"]
+    };
     let message = format!(
         "the force on `{edge}` is {} N along {axis}, but the markers show that the grip acts on the specimen towards {side}{axis}",
         force.force,

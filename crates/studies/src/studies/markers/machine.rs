@@ -43,7 +43,7 @@ impl FrameClock {
 /// Measured forces, each with its frame where that is said.
 pub type FrameForces = Vec<(Option<usize>, MeasuredForce)>;
 
-/// What the rows of a table are matched by, one value a row.
+/// What the rows of a table are matched to frames by, one value a row.
 enum Match {
     /// The row of each frame.
     Frames(HashMap<u64, usize>),
@@ -51,15 +51,15 @@ enum Match {
     Times(Vec<f64>),
 }
 
-/// The forces of all frames of a series, and a word about frames without one.
+/// The forces of all frames of a series, and a warning about frames without one.
 ///
 /// # Errors
-/// [`Error::Input`] with the place in the file and what to do, where columns are missing or rows cannot be matched.
+/// [`Error::Input`] with the line of the file and what to do, where columns are missing or rows cannot be matched.
 pub fn forces(
     path: &Path,
     wanted: &[ForceColumn],
     (series, clock): (&MarkerSeries, FrameClock),
-) -> Result<(FrameForces, Vec<Diagnostic>), Error> {
+) -> Result<(FrameForces, Option<Diagnostic>), Error> {
     let table = Table::read(path, Table::HINT)?;
     if wanted.is_empty() {
         let heads: Vec<String> = table.columns.iter().map(|column| column.head()).collect();
@@ -104,7 +104,7 @@ pub fn forces(
         );
         Diagnostic::warning("", message).hint("they are corrected without one")
     });
-    Ok((measured, warning.into_iter().collect()))
+    Ok((measured, warning))
 }
 
 /// The forces of a column in N.
@@ -164,7 +164,7 @@ fn matching(table: &Table) -> Result<Match, Error> {
     }
 }
 
-/// A number by which frames are found: equal ones have the same bits, both zeros too.
+/// The bits of a number by which frames are found, the same for both zeros.
 fn key(number: f64) -> u64 {
     (number + 0.0).to_bits()
 }
@@ -232,7 +232,7 @@ mod tests {
         }
     }
 
-    type Found = Result<(FrameForces, Vec<Diagnostic>), Error>;
+    type Found = Result<(FrameForces, Option<Diagnostic>), Error>;
 
     fn of(text: &str, column: &str, frames: &[(usize, Option<f64>)]) -> Found {
         on_clock(text, column, frames, FrameClock::default())
@@ -261,26 +261,22 @@ mod tests {
     #[test]
     fn forces_are_matched_by_frame_or_between_times() {
         let by_frame = "frame,ux [mm],Load [N]\n2,1,-5\n7,2,8\n";
-        let (forces, warnings) = of(by_frame, "-Load", &[(7, None), (2, None), (3, None)]).unwrap();
+        let (forces, warning) = of(by_frame, "-Load", &[(7, None), (2, None), (3, None)]).unwrap();
         let values: Vec<_> = forces
             .iter()
             .map(|(frame, one)| (frame.unwrap(), one.force))
             .collect();
         assert_eq!(values, [(7, -8.0), (2, 5.0)]);
         assert!((forces[0].1.standard_deviation - 0.08).abs() < 1e-12);
-        assert!(
-            warnings[0]
-                .to_string()
-                .contains("no force for the frames 3"),
-            "{warnings:?}"
-        );
-        let (forces, warnings) = of(BY_TIME, "load", &[(1, Some(1.0)), (2, Some(1.5))]).unwrap();
+        let warning = warning.unwrap().to_string();
+        assert!(warning.contains("no force for the frames 3"), "{warning}");
+        let (forces, warning) = of(BY_TIME, "load", &[(1, Some(1.0)), (2, Some(1.5))]).unwrap();
         let values: Vec<f64> = forces.iter().map(|(_, one)| one.force).collect();
         assert!(
             (values[0] - 2.0).abs() < 1e-12 && (values[1] - 3.0).abs() < 1e-12,
             "{values:?}"
         );
-        assert!(warnings.is_empty());
+        assert_eq!(warning, None);
         let late = FrameClock {
             interval: Some(0.5),
             offset: 0.5,

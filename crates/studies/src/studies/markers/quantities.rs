@@ -1,7 +1,7 @@
 //! Quantities of a corrected frame that several files and pictures show: nominal stress, and residuals of markers.
 
 use crate::estimation::{FieldEstimate, MarkerEstimate, StressEstimate};
-use crate::markers::Frame;
+use crate::markers::{Frame, Marker};
 use crate::statistics::nearest;
 
 /// The number of markers on the mesh.
@@ -60,18 +60,24 @@ pub fn residuals(estimate: &FieldEstimate) -> impl Iterator<Item = [f64; 5]> {
     markers.map(move |marker| marker.map_or([f64::NAN; 5], of))
 }
 
-/// The mean residual of every marker and its eight nearest neighbours in mm, which noise alone would make a third of its own
-/// size; NaN where a marker does not lie on the mesh.
+/// The markers on the mesh that are no outliers: the index of each among those of the frame, the marker, and its residual in mm.
+pub fn sound<'a>(
+    frame: &'a Frame,
+    estimate: &'a FieldEstimate,
+) -> impl Iterator<Item = (usize, &'a Marker, [f64; 2])> {
+    let pairs = frame.markers.iter().zip(&estimate.markers).enumerate();
+    pairs.filter_map(|(index, (marker, estimate))| {
+        let estimate = estimate.filter(|estimate| !estimate.outlier)?;
+        Some((index, marker, estimate.residual))
+    })
+}
+
+/// The mean residual of every marker and its eight nearest neighbours in mm, which for noise alone is a third of the residual; NaN where a
+/// marker does not lie on the mesh or is an outlier.
 pub fn misfits(frame: &Frame, estimate: &FieldEstimate) -> Vec<[f64; 2]> {
     const NEIGHBOURS: usize = 8;
-    let pairs = frame.markers.iter().zip(&estimate.markers).enumerate();
-    let sound: Vec<_> = pairs
-        .filter_map(|(index, (marker, estimate))| {
-            let estimate = estimate.filter(|estimate| !estimate.outlier)?;
-            Some((index, marker.position, estimate.residual))
-        })
-        .collect();
-    let positions: Vec<[f64; 2]> = sound.iter().map(|(_, position, _)| *position).collect();
+    let sound: Vec<_> = sound(frame, estimate).collect();
+    let positions: Vec<[f64; 2]> = sound.iter().map(|(_, marker, _)| marker.position).collect();
     let mut all = vec![[f64::NAN; 2]; frame.markers.len()];
     for (marker, others) in nearest(&positions, NEIGHBOURS).into_iter().enumerate() {
         let members = others.iter().chain([&marker]);
@@ -83,7 +89,7 @@ pub fn misfits(frame: &Frame, estimate: &FieldEstimate) -> Vec<[f64; 2]> {
     all
 }
 
-/// Residuals up to this size in mm are those of the numbers, as of a computed field.
+/// Residuals up to this size in mm are rounding, as those of a computed field.
 pub fn rounding(estimate: &FieldEstimate) -> f64 {
     const SHARE: f64 = 1e-6;
     let displacement = estimate.displacement.iter();

@@ -3,17 +3,16 @@
 use super::{MarkerStudy, Request};
 use crate::error::{Diagnostic, Error};
 use crate::estimation::{FieldEstimate, MOST_REFINED_CELLS};
-use crate::markers::Frame;
 use crate::material::Card;
 use crate::units::decimals;
 
-/// Share of the area on which the mesh's own error may be the larger part of the error of stress.
+/// Share of the area on which the discretisation error may be the larger part of the error of stress.
 const COARSE: f64 = 0.05;
 
 impl MarkerStudy {
-    /// Reads everything but the material, as [`Self::prepare_with`], and halves the cells until, in the frame that moves most, the mesh's
-    /// own error is the larger part of the error of stress on 5 % of the area at most. Where that would take more cells than can be refined, a
-    /// warning says how far it came.
+    /// Reads everything but the material, as [`Self::prepare_with`], and halves the cells until, in the frame that moves most, the
+    /// discretisation error is the larger part of the error of stress on 5 % of the area at most. Where that would take more cells than can be
+    /// refined, a warning states the share that remains.
     ///
     /// # Errors
     /// As [`Self::prepare`] and [`Self::estimate_frame`]; [`Error::Input`] where the mesh is not made inside an outline.
@@ -31,7 +30,10 @@ impl MarkerStudy {
                 ));
             };
             watch(&format!("cells of {} mm", decimals(size, 4)));
-            let estimate = study.estimate_frame(most_moved(&study)?)?;
+            let frame = study
+                .most_moved()
+                .ok_or_else(|| Error::input("there are no frames", "give a field with markers"))?;
+            let estimate = study.estimate_frame(frame)?;
             let share = estimate.coarse_share(&study.mesh);
             if share <= COARSE {
                 return Ok(study);
@@ -59,12 +61,7 @@ impl MarkerStudy {
     }
 }
 
-fn most_moved(study: &MarkerStudy) -> Result<&Frame, Error> {
-    let frame = study.most_moved();
-    frame.ok_or_else(|| Error::input("there are no frames", "give a field with markers"))
-}
-
-/// Where the mesh rather than the noise makes the intervals of stress wide.
+/// A remark where the mesh rather than the noise makes the intervals of stress wide.
 pub(super) fn remark(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Option<String> {
     let shares = field.frames_with(estimates);
     let shares = shares.map(|(frame, estimate)| (frame.number, estimate.coarse_share(&field.mesh)));

@@ -5,9 +5,10 @@ use std::path::{Path, PathBuf};
 use super::conditions::Conditions;
 use super::specimen_file::SpecimenFile;
 use crate::budget::Budget;
-use crate::markers::ReadSettings;
+use crate::error::Error;
+use crate::markers::{MarkerFiles, ReadSettings, read};
 use crate::mesh::{CellShape, MeshReading};
-use crate::studies::images::{ImageSettings, are_images};
+use crate::studies::images::{ImageRequest, ImageSettings, TrackedImages, are_images};
 
 /// Where the mesh comes from.
 #[derive(Clone, Debug)]
@@ -25,7 +26,7 @@ pub enum MeshSource {
 pub struct Request {
     /// The files of the field.
     pub files: Vec<PathBuf>,
-    /// How they are to be understood.
+    /// Units, columns and axes of these files, as far as they are stated.
     pub reading: ReadSettings,
     /// How images are followed, where the files are images.
     pub images: ImageSettings,
@@ -41,11 +42,11 @@ pub struct Request {
     pub shape: CellShape,
     /// Whether gaps among the markers are holes of the specimen.
     pub holes: bool,
-    /// What is known besides.
+    /// What is known besides the displacements.
     pub conditions: Conditions,
     /// A testing machine's table with forces of the frames.
     pub forces: Option<PathBuf>,
-    /// What it may ask for.
+    /// The memory and the work that it may use.
     pub budget: Budget,
 }
 
@@ -53,6 +54,31 @@ impl Request {
     /// Whether the field is measured in images.
     pub(super) fn has_images(&self) -> bool {
         !self.images.in_memory.is_empty() || are_images(&self.files)
+    }
+
+    /// The markers of the files; or those of images that are followed, and these images. Each image is reported before it is followed.
+    ///
+    /// # Errors
+    /// As of [`read`] and [`ImageRequest::follow`].
+    pub(super) fn read_field(
+        &self,
+        watch: &dyn Fn(&str),
+    ) -> Result<(MarkerFiles, Option<TrackedImages>), Error> {
+        if !self.has_images() {
+            return Ok((read(&self.files, &self.reading)?, None));
+        }
+        let images = ImageRequest {
+            files: &self.files,
+            pixel: self.reading.unit,
+            settings: &self.images,
+            outline: match &self.mesh {
+                MeshSource::Outline(path) => Some(path),
+                _ => None,
+            },
+            budget: self.budget,
+        };
+        let tracked = images.follow(watch)?;
+        Ok((tracked.markers(), Some(tracked)))
     }
 }
 

@@ -56,7 +56,7 @@ pub fn keys(text: &str) -> Vec<Key> {
     faults.keys()
 }
 
-/// How the frames' times and those of the testing machine belong together.
+/// The relation of the frames' times to those of the testing machine.
 fn clock(root: &Section) -> FrameClock {
     let time = |key, bound| root.optional_quantity(key, Dimension::Time, bound);
     FrameClock {
@@ -68,26 +68,29 @@ fn clock(root: &Section) -> FrameClock {
 /// Reads all keys; faults are recorded.
 fn read(root: &Section, folder: &Path) -> Conditions {
     let length = |key, bound| root.optional_quantity(key, Dimension::Length, bound);
+    let scale_bound = Bound::Within(0.0, 0.5);
     let mut conditions = Conditions {
         title: root.stated("title", Section::heading).unwrap_or_default(),
         noise: length("noise", Bound::Positive),
         edge_gap: length("edge_gap", Bound::NonNegative),
+        scale_deviation: root
+            .optional_quantity("scale_error", Dimension::Ratio, scale_bound)
+            .unwrap_or_default(),
+        clock: clock(root),
+        robust: root.optional_choice("robust", &Robust::NAMES),
+        physics: root
+            .optional_choice("physics", &Physics::NAMES)
+            .unwrap_or_default(),
+        unnamed: root
+            .optional_choice("unnamed", &Unnamed::NAMES)
+            .unwrap_or_default(),
+        sheet: root.optional_choice("sheet", &PlaneState::NAMES),
+        fit: root.optional_texts("fit"),
+        specimen: root
+            .stated("specimen", Section::section)
+            .map(|section| SpecimenFile::read(&section)),
         ..Conditions::default()
     };
-    if root.has("scale_error") {
-        let half = Bound::Within(0.0, 0.5);
-        conditions.scale_deviation = root.quantity("scale_error", Dimension::Ratio, half);
-    }
-    conditions.clock = clock(root);
-    conditions.robust = root.optional_choice("robust", &Robust::NAMES);
-    let physics = root.optional_choice("physics", &Physics::NAMES);
-    conditions.physics = physics.unwrap_or_default();
-    let unnamed = root.optional_choice("unnamed", &Unnamed::NAMES);
-    conditions.unnamed = unnamed.unwrap_or_default();
-    conditions.sheet = root.optional_choice("sheet", &PlaneState::NAMES);
-    conditions.fit = root.optional_texts("fit");
-    let specimen = root.stated("specimen", Section::section);
-    conditions.specimen = specimen.map(|section| SpecimenFile::read(&section));
     for section in &root.optional_tables("force") {
         if section.has("column") && !section.has("force") {
             conditions.force_columns.push(force_column(section));
