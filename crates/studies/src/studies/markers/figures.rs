@@ -7,6 +7,7 @@ use crate::mesh::geometry::bounding_box;
 use crate::results::{
     Deformed, Drawing, FieldFigure, Figure, Panel, ShownFields, mesh_outlines, sheet_figures,
 };
+use crate::statistics::farthest;
 use crate::studies::markers::MarkerStudy;
 
 use super::quantities::{misfits, nominal_stress, residuals};
@@ -35,7 +36,7 @@ pub fn figures(
             "stress.png",
             "Largest component of the nominal stress in every cell, averaged at the nodes.",
             pictures.in_cells("Nominal stress", "largest component [MPa]", &|cell| {
-                largest(nominal_stress(&cells[cell]))
+                farthest(nominal_stress(&cells[cell])).abs()
             }),
         ),
         Figure::new(
@@ -148,7 +149,7 @@ impl Pictures<'_> {
                 self.in_cells(
                     "Standard error of the nominal stress",
                     "largest component [MPa]",
-                    &|cell| largest(estimate.cells[cell].stress_error),
+                    &|cell| farthest(estimate.cells[cell].stress_error).abs(),
                 ),
             ),
             Figure::new(
@@ -188,8 +189,4 @@ impl Pictures<'_> {
             ),
         )
     }
-}
-
-fn largest(components: [f64; 4]) -> f64 {
-    components.iter().fold(0.0, |most, c| most.max(c.abs()))
 }

@@ -3,10 +3,10 @@
 
 use super::MarkerStudy;
 use crate::estimation::{Answer, FieldEstimate};
-use crate::statistics::Estimate;
+use crate::statistics::{Estimate, farthest};
 use crate::units::{decimals, number};
 
-/// The interval of a force through the edges of the mesh; nothing of a force without uncertainty.
+/// The interval of a force through the edges of the mesh; empty for a force without uncertainty.
 pub fn interval(estimate: &FieldEstimate, force: &Estimate) -> String {
     let [low, high] = force.interval;
     if low >= high {
@@ -47,7 +47,7 @@ fn without_growth(estimate: &FieldEstimate, force: &Estimate) -> ([f64; 2], Opti
     }
 }
 
-/// What the size of the forces rests on, where it is the card's.
+/// On what the size of the forces is based, where that is the card.
 pub fn basis(study: &MarkerStudy, estimate: &FieldEstimate) -> Option<String> {
     let name = &study.card.name;
     if !estimate.is_given_the_law || !estimate.has_intervals() {
@@ -110,12 +110,17 @@ struct Changed<'a> {
     change: f64,
 }
 
+/// The magnitude of the largest force of a frame along an axis in N.
+pub fn largest(estimate: &FieldEstimate) -> f64 {
+    let forces = estimate.forces.iter().flat_map(|edge| &edge.force);
+    farthest(forces.map(|force| force.value)).abs()
+}
+
 /// The forces of a frame that are not small.
 fn changes(estimate: &FieldEstimate) -> Vec<Changed<'_>> {
     /// Share of the largest force.
     const SMALL: f64 = 1e-2;
-    let values = estimate.forces.iter().flat_map(|edge| &edge.force);
-    let largest = values.fold(0.0_f64, |most, force| most.max(force.value.abs()));
+    let largest = largest(estimate);
     let pairs = estimate.forces.iter().zip(&estimate.scale_change.forces);
     let all = pairs.flat_map(|(edge, change)| {
         [0, 1].map(|axis| Changed {

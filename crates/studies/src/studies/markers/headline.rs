@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::MarkerStudy;
-use super::forces::{basis, farther_out, interval, reason};
+use super::forces::{basis, farther_out, interval, largest, reason};
 use super::report::parameters;
 use crate::error::Diagnostic;
 use crate::estimation::{EdgeForce, FieldEstimate};
@@ -16,8 +16,8 @@ use crate::units::{decimals, number};
 /// Most rows of the table of forces; of more, those of the last frames are listed.
 const MOST_ROWS: usize = 12;
 
-/// Forces below this share of a frame's largest say nothing at a glance.
-const NOTHING: f64 = 1e-4;
+/// Forces below this share of a frame's largest are shown as zero.
+const NEGLIGIBLE: f64 = 1e-4;
 
 /// Forces with their intervals, the law's parameters, and the largest stress and stretch of the last frame.
 pub fn headline(study: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> {
@@ -45,7 +45,7 @@ pub fn headline(study: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> 
     blocks
 }
 
-/// A mistake in the files, which stands before figures that nobody measured.
+/// A mistake in the files, which is stated before the figures that follow from it.
 pub(in crate::studies) fn mistaken(mistake: &Diagnostic) -> Block {
     let hint = mistake.hint.as_deref().unwrap_or_default();
     Block::Paragraph(format!("Doubtful: {}. Remedy: {hint}.", mistake.message))
@@ -102,14 +102,12 @@ fn forces(study: &MarkerStudy, estimates: &[FieldEstimate]) -> Block {
     table.block()
 }
 
-/// A force, zero where it is nothing beside the frame's largest and its interval does not exclude that.
+/// A force; zero where it is negligible beside the frame's largest and its interval contains zero.
 fn figure(estimate: &FieldEstimate, force: &Estimate) -> String {
-    let all = estimate.forces.iter().flat_map(|edge| &edge.force);
-    let largest = all.fold(0.0_f64, |most, force| most.max(force.value.abs()));
     let [low, high] = force.interval;
     let may_be_zero = !estimate.has_intervals() || low * high <= 0.0;
     match force.value {
-        small if small.abs() <= NOTHING * largest && may_be_zero => number(0.0),
+        small if small.abs() <= NEGLIGIBLE * largest(estimate) && may_be_zero => number(0.0),
         value => decimals(value, 4),
     }
 }

@@ -1,14 +1,16 @@
-//! Mistakes in how a field was written, each tried by undoing it: the field that was meant is far nearer to an equilibrium.
+//! Mistakes in how a field was written. Each is tried by estimating the field that would have been intended: where the mistake was made, this
+//! field is far nearer to an equilibrium than the one that was written.
 //!
 //! ```text
-//! AIC = 2 n ln r + 2 p        r of n values, p parameters: by less than this the markers would not choose
+//! AIC = 2 n ln r + 2 p        r: residual, n: number of values, p: number of parameters
 //! ```
 //!
-//! A nearly uniform field leaves the same residual whatever it was written as: loads on all edges hold any uniform strain. There the
-//! edges tell the mistake: with it undone, some are free that the field as written refuses, as hardly one of all biaxial tests would do.
+//! decides between both. A nearly uniform field has the same residual with and without a mistake, since loads on all edges hold any uniform
+//! strain in equilibrium. There the edges decide: some are free in the intended field and surely not in the written one, as in hardly any
+//! biaxial test.
 //!
-//! Only fields whose misfit is more than their noise, or in which no edge is free where the data may choose, are tried, in the one frame
-//! that moves most: a mistake is that of a file.
+//! Only fields whose misfit is more than their noise, or in which no edge is free where the data may choose, are tried, and of a file only the
+//! frame that moves most, because all frames of a file have the same mistake.
 
 use nalgebra::Matrix2;
 use rayon::prelude::*;
@@ -33,16 +35,16 @@ pub enum Mistake {
     Mirrored(usize),
 }
 
-/// How much smaller Akaike's criterion is where a mistake is named: one of e¹⁵ fields is named by chance.
+/// By how much Akaike's criterion is smaller where a mistake is reported: by chance this happens to one of e¹⁵ fields.
 const SURE: f64 = 30.0;
 
-/// How much nearer to the markers a field must be that is not explained either.
+/// The ratio of residuals from which on a mistake is reported though the intended field is not explained either.
 const NEARER: f64 = 3.0;
 
 /// The share of the residuals' variance that correlates, from which on a misfit may be that of a mistake.
 const MUCH: f64 = 0.5;
 
-/// Principal stretches of specimens, on the mean.
+/// The mean principal stretches that specimens are believed to have.
 const STRETCHES: std::ops::Range<f64> = 0.2..5.0;
 
 impl Mistake {
@@ -54,8 +56,8 @@ impl Mistake {
         Self::Mirrored(1),
     ];
 
-    /// The displacement that was meant.
-    fn undone(self, marker: Marker) -> Marker {
+    /// The marker with the displacement that was intended.
+    fn intended(self, marker: Marker) -> Marker {
         let ([x, y], [ux, uy]) = (marker.position, marker.displacement);
         let displacement = match self {
             Self::FinalPositions => [ux - x, uy - y],
@@ -70,19 +72,19 @@ impl Mistake {
         }
     }
 
-    /// Whether a specimen may be strained as the undone field is on the mean: nothing that is pulled only shears, and what is
-    /// pulled narrows.
-    fn may_be(self, written: &Matrix2<f64>, undone: &Matrix2<f64>) -> bool {
-        let deformation = Matrix2::identity() + undone;
+    /// Whether the mean displacement gradient of the intended field is that of a test: a specimen that is pulled is not only sheared, and
+    /// becomes narrower.
+    fn is_plausible(self, written: &Matrix2<f64>, intended: &Matrix2<f64>) -> bool {
+        let deformation = Matrix2::identity() + intended;
         let stretches = deformation.singular_values();
         let is_sound = deformation.determinant() > 0.0
             && stretches.iter().all(|stretch| STRETCHES.contains(stretch));
-        let straight = |h: &Matrix2<f64>| h.m11.abs().max(h.m22.abs());
+        let normal_strain = |h: &Matrix2<f64>| h.m11.abs().max(h.m22.abs());
         is_sound
             && match self {
                 Self::FinalPositions | Self::Reversed => true,
-                Self::Exchanged => straight(undone) > straight(written),
-                Self::Mirrored(_) => undone.m11 * undone.m22 < 0.0,
+                Self::Exchanged => normal_strain(intended) > normal_strain(written),
+                Self::Mirrored(_) => intended.m11 * intended.m22 < 0.0,
             }
     }
 
@@ -119,17 +121,17 @@ impl MarkerStudy {
         let doubtful = frames.filter(|(_, estimate)| may_be_mistaken(estimate));
         let (frame, estimate) =
             doubtful.max_by(|(a, _), (b, _)| a.motion().total_cmp(&b.motion()))?;
-        let (mistake, meant) = self.likeliest(frame, Some(estimate))?;
+        let (mistake, intended) = self.likeliest(frame, Some(estimate))?;
         let (seems, hint) = mistake.words();
         let message = format!(
             "frame {}: the field seems to be {seems}: with this undone {}",
             frame.number,
-            evidence(&meant, estimate)
+            evidence(&intended, estimate)
         );
         Some(Diagnostic::warning("", message).hint(hint))
     }
 
-    /// Why a frame seems to have no estimate: a mistake that it holds, or conditions of edges that are not theirs.
+    /// Why a frame seems to have no estimate: a mistake in its file, or wrong conditions of edges.
     pub(super) fn cause_without_solution(&self, frame: &Frame) -> Option<Diagnostic> {
         let Some((mistake, _)) = self.likeliest(frame, None) else {
             return self.wrong_conditions(frame);
@@ -139,7 +141,7 @@ impl MarkerStudy {
         Some(Diagnostic::error("", message).hint(hint))
     }
 
-    /// The edge, or else all edges, without whose stated conditions a frame is explained; nothing where it is not without them all.
+    /// The edge, or else all edges, without whose stated conditions a frame is explained; `None` where it is not explained without all of them.
     fn wrong_conditions(&self, frame: &Frame) -> Option<Diagnostic> {
         if self.coarse.is_some() {
             return None;
@@ -150,7 +152,7 @@ impl MarkerStudy {
         if stated.is_empty() || !self.is_explained_without(&stated, frame) {
             return None;
         }
-        // One alone is all of them.
+        // A single edge has been tried above.
         let mut each = stated.chunks(1).filter(|_| stated.len() > 1);
         let one = each.find(|name| self.is_explained_without(name, frame));
         let names = one.unwrap_or(&stated).join(" and ");
@@ -178,7 +180,7 @@ impl MarkerStudy {
         estimate.is_ok_and(|estimate| estimate.is_explained())
     }
 
-    /// The mistake that explains the most, and the estimate of the field that was meant.
+    /// The mistake that explains the most, and the estimate of the field that was intended.
     fn likeliest(
         &self,
         frame: &Frame,
@@ -189,13 +191,15 @@ impl MarkerStudy {
         }
         let gradient = frame.mean_gradient()?;
         let tried = Mistake::ALL.into_par_iter().filter_map(|mistake| {
-            let markers = frame.markers.iter().map(|marker| mistake.undone(*marker));
-            let meant = Frame {
+            let markers = frame.markers.iter().map(|marker| mistake.intended(*marker));
+            let intended = Frame {
                 markers: markers.collect(),
                 ..frame.clone()
             };
-            let may_be = mistake.may_be(&gradient, &meant.mean_gradient()?);
-            let estimate = may_be.then(|| self.estimate_frame(&meant).ok()).flatten()?;
+            if !mistake.is_plausible(&gradient, &intended.mean_gradient()?) {
+                return None;
+            }
+            let estimate = self.estimate_frame(&intended).ok()?;
             is_nearer(&estimate, written).then_some((mistake, estimate))
         });
         let tried: Vec<_> = tried.collect();
@@ -211,16 +215,16 @@ fn may_be_mistaken(estimate: &FieldEstimate) -> bool {
     !has_free_edge(estimate) || (!estimate.is_explained() && is_far)
 }
 
-/// What speaks for a mistake: the misfit that it explains, or the edges that become free.
-fn evidence(meant: &FieldEstimate, written: &FieldEstimate) -> String {
-    if criterion(written) - criterion(meant) <= SURE {
-        let freed = freed(meant, written).collect::<Vec<_>>().join(", ");
+/// The evidence for a mistake: the misfit that it explains, or the edges that become free.
+fn evidence(intended: &FieldEstimate, written: &FieldEstimate) -> String {
+    if criterion(written) - criterion(intended) <= SURE {
+        let freed = freed(intended, written).collect::<Vec<_>>().join(", ");
         return format!("it is explained with free edges ({freed}), instead of loads on all edges");
     }
     format!(
         "it leaves a residual of {} mm with {:.1} parameters, instead of {} mm with {:.1}",
-        decimals(residual_rms(meant), 4),
-        meant.effective_parameters,
+        decimals(residual_rms(intended), 4),
+        intended.effective_parameters,
         decimals(residual_rms(written), 4),
         written.effective_parameters,
     )
@@ -243,38 +247,41 @@ fn has_free_edge(estimate: &FieldEstimate) -> bool {
     chosen.peek().is_none() || chosen.any(|is_free| is_free)
 }
 
-/// The edges that are free in the field that may have been meant, and that the one that was written surely refuses as free ones.
-fn freed<'a>(meant: &'a FieldEstimate, written: &FieldEstimate) -> impl Iterator<Item = &'a str> {
+/// The edges that are free in the intended field and surely not free in the written one.
+fn freed<'a>(
+    intended: &'a FieldEstimate,
+    written: &FieldEstimate,
+) -> impl Iterator<Item = &'a str> {
     let surely = (-SURE / 2.0).exp();
-    let both = meant.edges.iter().zip(&written.edges);
-    let freed = both.filter(move |(meant, written)| {
+    let both = intended.edges.iter().zip(&written.edges);
+    let freed = both.filter(move |(intended, written)| {
         let refused = written.condition != EdgeCondition::Free;
         let is_sure = written
             .probability
             .is_some_and(|probability| probability < surely);
-        meant.condition == EdgeCondition::Free && refused && is_sure
+        intended.condition == EdgeCondition::Free && refused && is_sure
     });
     freed.map(|(edge, _)| &*edge.edge)
 }
 
-/// Whether the field that may have been meant is far more probable than the one that was written.
-fn is_nearer(meant: &FieldEstimate, written: Option<&FieldEstimate>) -> bool {
+/// Whether the intended field is far more probable than the written one.
+fn is_nearer(intended: &FieldEstimate, written: Option<&FieldEstimate>) -> bool {
     let Some(written) = written else {
-        return is_natural(meant);
+        return is_natural(intended);
     };
-    // Stated edges that are wrong explain more than a mistake that is none.
+    // Where a stated edge is wrong, its release reduces the misfit by more than a mistake that was not made.
     let trials = written.verdict.trials.iter();
     let released = trials
         .map(|trial| trial.residual_rms)
         .fold(f64::INFINITY, f64::min);
-    let residual = residual_rms(meant);
+    let residual = residual_rms(intended);
     let nearer = NEARER * residual < residual_rms(written) && residual < released;
-    let is_sure = criterion(written) - criterion(meant) > SURE;
-    let frees = !has_free_edge(written) && freed(meant, written).next().is_some();
-    (is_sure && (nearer || is_natural(meant))) || (frees && is_natural(meant))
+    let is_sure = criterion(written) - criterion(intended) > SURE;
+    let frees = !has_free_edge(written) && freed(intended, written).next().is_some();
+    (is_sure && (nearer || is_natural(intended))) || (frees && is_natural(intended))
 }
 
-/// Akaike's criterion. Residuals that are rounding of the displacements are alike.
+/// Akaike's criterion; residuals below the rounding of the displacements count as equal.
 fn criterion(estimate: &FieldEstimate) -> f64 {
     let residual = residual_rms(estimate).max(rounding(estimate));
     let values = 2.0 * used(estimate) as f64;
@@ -296,7 +303,7 @@ mod tests {
     use crate::mesh::CellShape;
     use crate::studies::markers::{Conditions, MeshSource, Request};
 
-    /// What is said of a strip of 60 mm × 20 mm with these stretches, written with a mistake or none, and the answer.
+    /// The doubt about a strip of 60 mm × 20 mm with these stretches, written with a mistake or none, and the answer.
     fn doubt_and_answer(
         [x, y]: [f64; 2],
         noise: f64,

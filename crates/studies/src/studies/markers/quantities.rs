@@ -2,7 +2,7 @@
 
 use crate::estimation::{FieldEstimate, MarkerEstimate, StressEstimate};
 use crate::markers::{Frame, Marker};
-use crate::statistics::nearest;
+use crate::statistics::{farthest, nearest};
 
 /// The number of markers on the mesh.
 pub fn used(estimate: &FieldEstimate) -> usize {
@@ -92,6 +92,5 @@ pub fn misfits(frame: &Frame, estimate: &FieldEstimate) -> Vec<[f64; 2]> {
 /// Residuals up to this size in mm are rounding, as those of a computed field.
 pub fn rounding(estimate: &FieldEstimate) -> f64 {
     const SHARE: f64 = 1e-6;
-    let displacement = estimate.displacement.iter();
-    SHARE * displacement.fold(0.0, |most: f64, u| most.max(u.abs()))
+    SHARE * farthest(estimate.displacement.iter().copied()).abs()
 }
