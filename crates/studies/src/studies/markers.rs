@@ -24,7 +24,7 @@ use crate::studies::images::IMAGES;
 mod alike;
 mod area;
 mod conditions;
-mod edge_place;
+mod edge_position;
 mod figures;
 pub(super) mod finding;
 mod findings;
@@ -58,7 +58,7 @@ use finding::once;
 pub(super) use headline::mistaken;
 pub use machine::{ForceColumn, FrameForces};
 pub use materials::in_plane;
-use materials::{check_regions, of_divided, of_materials};
+use materials::{card_warnings, check_regions, one_card_warning};
 pub use request::{MeshSource, Request};
 pub use specimen_file::SpecimenFile;
 use specimen_mesh::mesh;
@@ -96,24 +96,25 @@ pub struct MarkerStudy {
     pub warnings: Vec<Diagnostic>,
     /// Doubts about the figures of all frames.
     pub doubts: Vec<Finding>,
-    /// The mistake that the files seem to hold, from which all other doubts follow.
+    /// The mistake that the files seem to have, from which all other doubts follow.
     pub mistake: Option<Diagnostic>,
     /// Why the images seem to have been followed wrongly.
     pub mistaken_images: Option<Diagnostic>,
-    /// Where only the markers show the specimen's edge: how far outside of them it may lie, in mm. The intervals of forces include this.
+    /// How far outside of the outermost markers the specimen's edge may lie, in mm, where only the markers show it. The intervals of forces
+    /// include this.
     pub unknown_gap: Option<f64>,
-    /// How well an edge that was traced in images is known, in mm; 0 of others.
+    /// The accuracy of an edge that was traced in images, in mm; 0 for other edges.
     pub edge_accuracy: f64,
 }
 
-/// The warning about so many markers outside of the mesh.
-fn of_outside(markers: usize) -> Option<Diagnostic> {
+/// The warning that so many markers lie outside of the mesh.
+fn outside_warning(markers: usize) -> Option<Diagnostic> {
     let message = format!("markers outside the mesh: {markers}");
     (markers > 0).then(|| Diagnostic::warning("", message).hint("they are left out"))
 }
 
 /// The doubts about an outline and about a thickness.
-fn of_reading(outline: Vec<Diagnostic>, thickness: Option<Diagnostic>) -> Vec<Finding> {
+fn reading_doubts(outline: Vec<Diagnostic>, thickness: Option<Diagnostic>) -> Vec<Finding> {
     let outline = outline
         .into_iter()
         .map(|doubt| ("uncertain-outline", doubt));
@@ -166,9 +167,9 @@ impl MarkerStudy {
         }
         let conditions = request.conditions;
         force_signs::check(&conditions.forces, &placed.series, &mesh, &*card.law)?;
-        warnings.extend(of_outside(placed.outside));
-        warnings.extend(of_materials(&card, &regions, &mesh));
-        warnings.extend(of_divided(&regions, &mesh));
+        warnings.extend(outside_warning(placed.outside));
+        warnings.extend(card_warnings(&card, &regions, &mesh));
+        warnings.extend(one_card_warning(&regions, &mesh));
         let thickness = (card.law.plane_state() == PlaneState::Stress)
             .then(|| check_thickness(&mesh, request.thickness))
             .flatten();
@@ -185,7 +186,7 @@ impl MarkerStudy {
             conditions,
             regressed,
             warnings: [field.warnings, warnings].concat(),
-            doubts: of_reading(specimen_mesh.doubts, thickness),
+            doubts: reading_doubts(specimen_mesh.doubts, thickness),
             mistake: None,
             mistaken_images: None,
             unknown_gap: specimen_mesh.unknown_gap,
@@ -238,10 +239,10 @@ impl MarkerStudy {
     }
 
     /// Leaves out the frames that could not be corrected, with a doubt for each kind of fault, and refutes the others where their files
-    /// seem to hold a mistake.
+    /// seem to have a mistake.
     ///
     /// # Errors
-    /// The first fault where no frame remains, or what it follows from.
+    /// The cause where no frame remains, or else the first fault.
     pub fn conclude(
         &mut self,
         estimates: &mut [FieldEstimate],
@@ -308,10 +309,10 @@ impl MarkerStudy {
             }
         };
         let estimate = estimate.map(|estimate| self.with_unknown_edge(estimate));
-        estimate.map_err(|error| of_one_frame(error, frame.number, self.series.frames.len()))
+        estimate.map_err(|error| of_frame(error, frame.number, self.series.frames.len()))
     }
 
-    /// The displacements of the nodes that are nearest to a frame, by [`nearest_field`] where that is enough.
+    /// The nodal displacements of the field in equilibrium nearest to a frame: by [`nearest_field`], or by a full estimate where that fails.
     fn nearest_displacement(&self, frame: &Frame, may_free_edges: bool) -> Result<Vec<f64>, Error> {
         let specimen = self.specimen();
         let nearest = self.weighted(&frame.markers, self.knowledge(frame), &|knowledge| {
@@ -347,7 +348,7 @@ fn faults(error: Error) -> impl Iterator<Item = (String, String)> {
 }
 
 /// An error with the frame in its message.
-fn of_one_frame(error: Error, number: usize, frames: usize) -> Error {
+fn of_frame(error: Error, number: usize, frames: usize) -> Error {
     match error {
         Error::Solve { model, fault, .. } => Error::Solve {
             model,

@@ -24,22 +24,21 @@ pub struct Conditions {
     pub areas: Vec<(String, Area)>,
     /// Standard deviation of each component of the displacement in mm.
     pub noise: Option<f64>,
-    /// How markers that are far off are weighted; where nothing is said, by Tukey's weights if some are farther off than noise
-    /// can be.
+    /// How markers with large residuals are weighted; where it is not given, by Tukey's weights if some are farther off than noise can be.
     pub robust: Option<Robust>,
     /// Whether equilibrium holds exactly.
     pub physics: Physics,
-    /// What is assumed of outer edges that are not named.
+    /// The condition of outer edges that are not named.
     pub unnamed: Unnamed,
-    /// Measured forces, with the frame where it is said.
+    /// Measured forces, with the frame where it is stated.
     pub forces: FrameForces,
-    /// Whether fields do not know the measured forces, but are only compared with them.
+    /// Whether the measured forces are only compared with the fields, and not used to find them.
     pub forces_are_checks: bool,
     /// Columns of a testing machine's table with forces.
     pub force_columns: Vec<ForceColumn>,
-    /// How the frames' times and those of that table belong together.
+    /// The relation of the frames' times to those of that table.
     pub clock: FrameClock,
-    /// Parameters of the law that are found with the field.
+    /// Parameters of the law that are estimated with the field.
     pub fit: Vec<String>,
     /// How far inside of the specimen's edge the outermost markers lie, in mm; unknown where it is not given.
     pub edge_gap: Option<f64>,
@@ -73,7 +72,7 @@ pub fn measured_force(
 }
 
 impl Conditions {
-    /// Whether the mesh has the edges that are named, each once.
+    /// Checks that the mesh has the edges that are named, each once.
     ///
     /// # Errors
     /// [`Error::Input`] with every name that is wrong.
@@ -94,11 +93,11 @@ impl Conditions {
         Error::refuse(faults)
     }
 
-    /// Leaves out the forces in frames at rest, takes edges with a measured force and no condition as loaded in an unknown way, and checks
-    /// whether all suits a mesh and a series.
+    /// Leaves out the forces in frames at rest, gives edges with a measured force and no condition an unknown one, and checks that the mesh
+    /// has all edges and the series all frames.
     ///
     /// # Errors
-    /// [`Error::Input`] with what does not.
+    /// [`Error::Input`] with those that are missing.
     pub fn suit(&mut self, mesh: &Mesh, series: &MarkerSeries) -> Result<(), Error> {
         let is_kept =
             |frame: &Option<usize>| frame.is_none_or(|number| !series.at_rest.contains(&number));
@@ -113,7 +112,7 @@ impl Conditions {
         self.check_frames(series)
     }
 
-    /// Whether the frames have the forces that are given: one frame each, the only one where none is said.
+    /// Checks that each force belongs to one frame, which must be the only one where none is stated.
     ///
     /// # Errors
     /// [`Error::Input`] with the first force that belongs to no frame.
@@ -193,7 +192,7 @@ impl Conditions {
         (!stated.is_empty()).then(|| Diagnostic::warning("", message).hint(hint))
     }
 
-    /// The law with parameters to be found, if there are any.
+    /// The law with parameters to be estimated, if there are any.
     ///
     /// # Errors
     /// [`Error::Input`] when the card has no such parameters.
@@ -203,7 +202,7 @@ impl Conditions {
         Ok(regressed.transpose()?)
     }
 
-    /// What the estimate of a frame takes; a law is regressed in frames with a force.
+    /// The conditions of a frame's estimate; the law is regressed only in frames with a force.
     pub fn knowledge(&self, frame: usize, law: Option<&RegressedLaw>) -> Knowledge {
         let forces = self.forces.iter();
         let forces = forces.filter(|(of, _)| of.is_none_or(|number| number == frame));

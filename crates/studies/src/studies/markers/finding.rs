@@ -5,7 +5,8 @@ use crate::results::{Finding, Found};
 /// A finding on one frame: its number, what was found, and what to do, which is the same for all findings of one kind.
 pub type OfFrame = (usize, Found);
 
-/// One doubt of a rule for each kind of findings, in the order of their first ones; messages that differ in their figures become one with their ranges. `all` are the numbers of the frames in their order.
+/// One doubt of a rule for each kind of findings, in the order of their first ones; messages that differ in their figures become one with their
+/// ranges. `all` are the numbers of the frames in their order.
 pub fn once(
     all: &[usize],
     rule: &'static str,
@@ -22,6 +23,7 @@ pub fn once(
     doubts.map(|doubt| Finding::doubt(rule, doubt)).collect()
 }
 
+/// The doubt about all frames with one kind of finding.
 fn together(all: &[usize], kind: &[OfFrame]) -> Option<Found> {
     let (frame, (last, remedy)) = kind.last()?;
     let numbers: Vec<usize> = kind.iter().map(|(frame, _)| *frame).collect();
@@ -53,7 +55,7 @@ fn with_ranges(messages: &[&str]) -> Option<String> {
     Some(words?.join(" "))
 }
 
-/// One word for several: the same, or numbers with the same mark behind them from the smallest to the largest.
+/// One word for several: the same, or the range of numbers that all have the same punctuation behind them.
 fn range(words: &[&str]) -> Option<String> {
     let first = words.first()?;
     if words.iter().all(|word| word == first) {

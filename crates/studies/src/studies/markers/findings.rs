@@ -22,7 +22,7 @@ type Rule = (
     fn(&MarkerStudy, &FieldEstimate) -> Option<Doubt>,
 );
 
-/// The rules by their names that each frame is checked by, the likeliest cause of others first.
+/// The rules by which each frame is checked, the likeliest cause of others first.
 const RULES: [Rule; 9] = [
     ("unknown-edge", unknown_edge),
     ("contradicted-edges", contradicted_edges),
@@ -37,7 +37,7 @@ const RULES: [Rule; 9] = [
     ("beyond-card", beyond_card),
 ];
 
-/// The rules whose findings a terminal tells elsewhere: the verdict, and a mistake in the files.
+/// The rules whose findings the terminal shows elsewhere: the verdict, and a mistake in the files.
 pub const NOT_EXPLAINED: &str = "not-explained";
 pub const MISTAKE: &str = "likely-mistake";
 
@@ -46,7 +46,7 @@ impl MarkerStudy {
     /// of single ones once.
     pub fn all_doubts(&self, estimates: &[FieldEstimate]) -> Vec<Finding> {
         if let Some(mistake) = self.mistake.clone() {
-            // All else follows from a field that nobody measured.
+            // All other findings follow from the mistake.
             return [&[Finding::doubt_of(MISTAKE, mistake)], &self.doubts[..]].concat();
         }
         let numbers = self.frame_numbers();
@@ -173,7 +173,7 @@ fn not_explained(estimate: &FieldEstimate) -> Option<Doubt> {
     })
 }
 
-/// Noise that is no measurement's: a share of the specimen and of its displacement.
+/// Noise that is too large for a measurement: more than a share of the specimen's size and of its displacement.
 fn no_measurement(study: &MarkerStudy, estimate: &FieldEstimate) -> Option<Doubt> {
     /// Noise over the specimen's smaller extent, and over the largest displacement.
     const NO_MEASUREMENT: f64 = 0.03;

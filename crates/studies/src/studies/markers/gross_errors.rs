@@ -1,13 +1,13 @@
-//! The weights of markers where nothing is said of them: all alike, unless some are farther off than noise can be.
+//! The weights of markers where none are stated: all alike, unless some are farther off than noise can be.
 //!
 //! ```text
 //! m e^(−d²/2) < 10⁻³      d: the largest standardised residual of m markers
 //! ```
 //!
-//! is a marker that noise makes in less than one of a thousand frames. Many gross errors hide each other: then the median of all d is far
-//! below that of noise. A marker like that is a gross error as long as there are few, or as they lie scattered among the others: many
-//! that lie together are a misfit of the equations, which must not be weighted away. Nor may they make up the noise by which this
-//! misfit is judged: with a noise that is large enough any law fits.
+//! holds where noise gives such a residual in less than one of a thousand frames. Many gross errors hide each other, because they enlarge the
+//! estimated noise: then the median of all d is far below that of normal noise. Markers with such residuals are gross errors as long as they
+//! are few, or lie scattered among the others. Many that lie together are a misfit of the equations, which must not be weighted away; nor may
+//! they enlarge the noise by which this misfit is judged, because with a noise that is large enough any law fits.
 
 use super::MarkerStudy;
 use super::quantities::{outliers, rounding, used};
@@ -23,15 +23,15 @@ const MOST_SCATTERED: f64 = 0.45;
 /// The scatter by the median over that by squares below which many markers may be gross errors.
 const IN_DOUBT: f64 = 0.75;
 
-/// Neighbours of a marker among which others like it are counted.
+/// Neighbours of an outlier among which other outliers are counted.
 const AROUND: usize = 4;
 
 /// Probability by noise below which a marker is a gross error.
 const CHANCE: f64 = 1e-3;
 
 impl MarkerStudy {
-    /// The estimate with the weights that are said, else with Tukey's where there are gross errors; these may also keep an estimate
-    /// without such weights from being found.
+    /// The estimate with the stated weights, else with Tukey's where there are gross errors; these may also be why no estimate with equal
+    /// weights is found.
     pub(super) fn weighted(
         &self,
         markers: &[Marker],
@@ -70,8 +70,8 @@ impl MarkerStudy {
     }
 }
 
-/// An estimate with full weights for all markers, beside that without gross errors where there are many that lie together: what the
-/// sound markers contradict is not explained, and gross errors that make up the noise leave nothing to judge.
+/// The verdict on an estimate with full weights for all markers, given that without gross errors where there are many that lie together. What
+/// the sound markers contradict is not explained; where gross errors make up the noise, nothing can be judged.
 fn judged_with(mut estimate: FieldEstimate, without: Option<FieldEstimate>) -> FieldEstimate {
     let noise = estimate.noise;
     let in_doubt = without.is_some() || has_hidden(&estimate);
@@ -97,7 +97,7 @@ fn has_gross_errors(estimate: &FieldEstimate) -> bool {
     used(estimate) as f64 * (-0.5 * largest * largest).exp() < CHANCE
 }
 
-/// Fewer degrees of freedom tell nothing of the shape of noise.
+/// The least number of degrees of freedom from which the distribution of the noise is judged.
 const FEWEST: f64 = 20.0;
 
 /// Whether gross errors are so many that they make up the noise of an estimate that gives all markers their weight.
@@ -108,8 +108,8 @@ fn has_hidden(estimate: &FieldEstimate) -> bool {
         && MarkerEstimate::scatter_by_median(&estimate.markers) < MarkerEstimate::GROSS_ERRORS
 }
 
-/// Whether outliers lie among the others as by chance: of the neighbours of one as many are outliers as of all markers, within four
-/// standard deviations: of outliers at random less than one set in a thousand lies beyond three, and of patches all do beyond ten.
+/// Whether outliers are scattered at random: the share of outliers among the neighbours of an outlier is that among all markers, within four
+/// standard deviations. Of random sets less than one in a thousand is beyond three; outliers in patches are beyond ten.
 fn are_scattered(markers: &[Marker], estimate: &FieldEstimate) -> bool {
     const DEVIATIONS: f64 = 4.0;
     let pairs = markers.iter().zip(&estimate.markers);
@@ -141,7 +141,7 @@ mod tests {
     use super::*;
     use crate::estimation::Verdict;
 
-    /// An estimate with an answer and markers of which a tenth is so many times as far off as the others.
+    /// An estimate with an answer and markers of which a tenth have `far` times the residual of the others.
     fn estimated(answer: Answer, far: f64) -> FieldEstimate {
         let marker = |index: usize| {
             let near = 1.0 / (0.9 + 0.1 * far * far).sqrt();

@@ -15,10 +15,10 @@ use crate::statistics::median;
 use crate::studies::images::TrackedImages;
 use crate::units::decimals;
 
-/// The most fields about which a frame is measured.
+/// The largest number of fields about which a frame is measured.
 const MOST: usize = 4;
 
-/// Root mean square of the change of the patches' displacements in pixels, and in their standard deviations, that counts as none.
+/// Root mean square of the change of the patches' displacements, in pixels and in their standard deviations, below which iterations end.
 const UNCHANGED: f64 = 0.01;
 const UNCHANGED_DEVIATIONS: f64 = 0.1;
 
@@ -34,17 +34,18 @@ struct Measured {
 }
 
 impl MarkerStudy {
-    /// With the patches of all frames measured about the fields in equilibrium that are nearest to them; each frame is reported before it begins.
+    /// The study with the patches of all frames measured about the fields in equilibrium that are nearest to them; each frame is reported before
+    /// it begins.
     ///
-    /// Where noise is so large that a patch alone does not lead to its displacement, neither may tracking: then each frame also starts from the
-    /// field of the frame before, the first one from rest, and the field counts about which the patches are the more similar.
+    /// Where the noise is so large that the search for a single patch fails, tracking may fail as well. Then each frame is also started from the
+    /// field of the frame before, the first one from rest, and the field is taken about which the patches are more similar.
     pub(super) fn about_equilibrium(
         mut self,
         images: &TrackedImages,
         is_mask: bool,
         watch: &dyn Fn(&str),
     ) -> Self {
-        let tell = |frame: &Frame| watch(&format!("patches of frame {}", frame.number));
+        let report = |frame: &Frame| watch(&format!("patches of frame {}", frame.number));
         if self.unknown_gap.is_none() {
             let (accuracy, words) = accuracy(images.pixel, is_mask);
             self.edge_accuracy = accuracy;
@@ -59,13 +60,13 @@ impl MarkerStudy {
         let measured: Vec<Option<Measured>> = if misfit.are_precise {
             let together = self.series.frames.chunks(4 * rayon::current_num_threads());
             let measured = together.map(|frames| {
-                frames.iter().for_each(tell);
+                frames.iter().for_each(report);
                 let frames = frames.par_iter().map(|frame| misfit.about_tracked(frame));
                 frames.collect::<Vec<_>>()
             });
             measured.flatten().collect()
         } else {
-            misfit.in_turn(&tell)
+            misfit.in_turn(&report)
         };
         for (frame, measured) in self.series.frames.iter_mut().zip(measured) {
             if let Some(measured) = measured {
@@ -77,11 +78,11 @@ impl MarkerStudy {
     }
 }
 
-/// How well an edge can be traced in an image, in pixels: that of a mask is as good as its pixels, a line as good as an eye.
+/// The accuracy of an edge that is traced in an image, in pixels: that of a mask by its pixels, that of lines by the eye of who draws them.
 const OF_MASK: f64 = 0.5;
 const OF_LINES: f64 = 0.25;
 
-/// How well the edge of a mask or of lines is known in mm, and this in words.
+/// The accuracy of the edge of a mask or of lines in mm, and this in words.
 fn accuracy(pixel: f64, is_mask: bool) -> (f64, String) {
     let (share, words) = if is_mask {
         (OF_MASK, "half")
@@ -100,16 +101,17 @@ fn accuracy(pixel: f64, is_mask: bool) -> (f64, String) {
 struct ImageMisfit<'a> {
     images: &'a TrackedImages,
     patches: Patches<'a>,
-    /// Whether most patches lead to their displacements by themselves.
+    /// Whether the noise is so small that most patches can be searched for one by one.
     are_precise: bool,
     study: &'a MarkerStudy,
 }
 
 impl ImageMisfit<'_> {
-    fn in_turn(&self, tell: &dyn Fn(&Frame)) -> Vec<Option<Measured>> {
+    /// Frame after frame, each also started from the field of the one before.
+    fn in_turn(&self, report: &dyn Fn(&Frame)) -> Vec<Option<Measured>> {
         let mut before = vec![0.0; 2 * self.study.mesh.nodes.len()];
         let frames = self.study.series.frames.iter().map(|frame| {
-            tell(frame);
+            report(frame);
             let starts = [
                 self.settled(frame, before.clone()),
                 self.about_tracked(frame),
@@ -127,8 +129,8 @@ impl ImageMisfit<'_> {
         self.settled(frame, start)
     }
 
-    /// Of the field, patches that lead to their displacements by themselves need only the gradient: whether edges are free does not matter to
-    /// them.
+    /// The nodal displacements of the field nearest to a frame. Patches that are searched for one by one need no more of it than its gradient, for
+    /// which it does not matter whether edges are free.
     fn nearest_displacement(&self, frame: &Frame) -> Option<Vec<f64>> {
         let may_free_edges = !self.are_precise;
         self.study.nearest_displacement(frame, may_free_edges).ok()
@@ -177,7 +179,7 @@ impl ImageMisfit<'_> {
     }
 }
 
-/// Whether the displacements of a frame's patches are those that were measured before, up to what counts as none.
+/// Whether the displacements of a frame's patches have not changed since they were last measured.
 fn is_unchanged(before: &[Marker], now: &[Marker], pixel: f64) -> bool {
     let pairs = before.iter().zip(now);
     let (mut squares, mut relative) = (0.0, 0.0);

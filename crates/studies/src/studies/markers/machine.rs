@@ -23,7 +23,7 @@ pub struct ForceColumn {
     pub standard_deviation: Option<f64>,
 }
 
-/// How the times of the frames and those of the testing machine belong together.
+/// The relation of the frames' times to those of the testing machine.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct FrameClock {
     /// Time in s from one frame to the next where frames have no time: number n is taken at n times this.
@@ -40,7 +40,7 @@ impl FrameClock {
     }
 }
 
-/// Measured forces, each with its frame where that is said.
+/// Measured forces, each with its frame where that is stated.
 pub type FrameForces = Vec<(Option<usize>, MeasuredForce)>;
 
 /// What the rows of a table are matched to frames by, one value a row.

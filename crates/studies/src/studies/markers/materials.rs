@@ -37,7 +37,7 @@ pub(super) fn in_common_plane(
 }
 
 /// The warnings about cards on a mesh, each once.
-pub(super) fn of_materials(
+pub(super) fn card_warnings(
     card: &Card,
     regions: &[(String, Card)],
     mesh: &Mesh,
@@ -61,10 +61,10 @@ pub(super) fn of_materials(
     all
 }
 
-/// Whether a mesh has the regions that have cards of their own.
+/// Checks that a mesh has all regions to which cards are given.
 ///
 /// # Errors
-/// [`Error::Input`] with every one that it has not.
+/// [`Error::Input`] with every region that it lacks.
 pub(super) fn check_regions(regions: &[(String, Card)], mesh: &Mesh) -> Result<(), Error> {
     let names: Vec<&str> = regions.iter().map(|(name, _)| &**name).collect();
     let faults = names.iter().enumerate().filter_map(|(index, name)| {
@@ -74,8 +74,8 @@ pub(super) fn check_regions(regions: &[(String, Card)], mesh: &Mesh) -> Result<(
     Error::refuse(faults.collect())
 }
 
-/// The warning about parts of a mesh of which none has a card of its own.
-pub(super) fn of_divided(regions: &[(String, Card)], mesh: &Mesh) -> Option<Diagnostic> {
+/// The warning that a mesh is divided into parts and one card is given for all.
+pub(super) fn one_card_warning(regions: &[(String, Card)], mesh: &Mesh) -> Option<Diagnostic> {
     let parts = divided(mesh).filter(|_| regions.is_empty())?;
     let message =
         format!("the cells of the mesh are divided into {parts}: all of them get the one card");

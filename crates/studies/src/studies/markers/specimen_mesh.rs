@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::edge_place::{EdgePlace, GIVE_EDGE, is_beside_grid, no_mesh};
+use super::edge_position::{EdgePosition, GIVE_EDGE, is_beside_grid, no_mesh};
 use super::request::{MeshSource, Request};
 use crate::budget::{Excess, Need};
 use crate::error::{Diagnostic, Error, Severity};
@@ -11,17 +11,17 @@ use crate::markers::{MarkerFiles, MarkerSeries, read_lines};
 use crate::mesh::{CellShape, Exemptions, Mesh, Outline, import};
 use crate::units::decimals;
 
-/// A mesh that is made has no more cells than this where so many go across, however dense the markers are, if no size is given.
+/// The largest number of cells for dense markers, if no size is given and enough cells go across the specimen.
 const ENOUGH_CELLS: f64 = 5_000.0;
 
-/// A mesh that is made has at most about so many cells, if no size is given.
+/// The largest number of cells of any mesh that is made, if no size is given.
 const MOST_CELLS: f64 = 20_000.0;
 
-/// Memory of an unknown of an estimate, with its intervals and what is written: as measured. Meshes that are refined for their
-/// own error take more of it, but are small.
+/// Measured memory for each unknown of an estimate in bytes, with its intervals and files. Meshes that are refined for their discretisation
+/// error take more for each unknown, but are small.
 const BYTES_OF_AN_UNKNOWN: f64 = 12_000.0;
 
-/// A mesh that is made has at least about so many cells across the specimen, if no size is given.
+/// The least number of cells across the specimen of a mesh that is made, if no size is given.
 const LEAST_ACROSS: f64 = 16.0;
 
 /// A mesh and what it was made from.
@@ -49,7 +49,7 @@ impl SpecimenMesh {
     }
 }
 
-/// The mesh that a request wants.
+/// The mesh of a request.
 pub(super) fn mesh(request: &Request, field: &MarkerFiles) -> Result<SpecimenMesh, Error> {
     if request.conditions.edge_gap.is_some()
         && (field.mesh.is_some() || !matches!(request.mesh, MeshSource::Data))
@@ -131,7 +131,7 @@ fn in_mask(
     )
 }
 
-/// A mesh inside closed lines in mm of a file, with what it has and a remedy.
+/// A mesh inside the closed lines in mm of a file; `what` and `path` name their origin, `hint` is the remedy where they enclose no specimen.
 fn inside(
     request: &Request,
     lines: Vec<Vec<[f64; 2]>>,
@@ -188,7 +188,7 @@ fn of_markers(request: &Request, field: &MarkerFiles) -> Result<SpecimenMesh, Er
     let spacing = traced.spacing;
     let beside_grid = is_beside_grid(&positions, &traced.outline, spacing);
     let reasons = std::mem::take(&mut traced.doubts).into_iter();
-    let edge = EdgePlace::of(request, &field.understood, traced, beside_grid)?;
+    let edge = EdgePosition::of(request, &field.understood, traced, beside_grid)?;
     let (mesh, size) = mesh_inside(request, &edge.outline, spacing, field.series.frames.len())?;
     let origin = format!(
         "made inside the outline of the markers, which are about {} mm apart{}",
@@ -210,23 +210,23 @@ fn of_markers(request: &Request, field: &MarkerFiles) -> Result<SpecimenMesh, Er
     })
 }
 
-/// The places that tell of the outline: those of lost markers too, but for those in gaps that are holes without them, if gaps are
-/// holes; and how many these are. Where so many are lost that the others are scattered, gaps are no holes.
+/// The positions of all markers, from which the outline is traced, without the lost markers that lie in holes among the others, if gaps are
+/// holes; and the number of these. Where so many are lost that the others are scattered, gaps are not taken for holes.
 fn positions(series: &MarkerSeries, gaps_are_holes: bool) -> (Vec<[f64; 2]>, usize) {
-    let places = series.tracked_positions();
+    let found = series.tracked_positions();
     let mut lost = series.lost.clone();
     if gaps_are_holes && !lost.is_empty() {
-        let outline = Outline::of_points(&places).ok();
+        let outline = Outline::of_points(&found).ok();
         if let Some(traced) = outline.filter(|traced| !traced.is_scattered) {
             lost.retain(|position| !traced.outline.has_in_a_hole(*position));
         }
     }
     let in_gaps = series.lost.len() - lost.len();
-    (places.into_iter().chain(lost).collect(), in_gaps)
+    (found.into_iter().chain(lost).collect(), in_gaps)
 }
 
-/// A mesh inside an outline, and the size of its cells in mm. Without a wish its nodes are as far apart as the markers, but at least 16 cells go
-/// across the specimen, and about 5,000 are made at most, or 20,000 where less would not go across.
+/// A mesh inside an outline, and the size of its cells in mm. If no size is given, its nodes are as far apart as the markers, but at least 16 cells
+/// go across the specimen, and at most about 5,000 are made, or 20,000 where fewer would not go across.
 fn mesh_inside(
     request: &Request,
     outline: &Outline,
@@ -269,7 +269,7 @@ fn mesh_inside(
     Ok((outline.mesh(size, request.shape), size))
 }
 
-/// What so many frames on a mesh will use.
+/// The need of so many frames on a mesh.
 fn need(cells: f64, nodes: f64, frames: usize) -> Need {
     let (unknowns, instants) = (2.0 * nodes, frames as f64);
     Need {
@@ -281,7 +281,7 @@ fn need(cells: f64, nodes: f64, frames: usize) -> Need {
     }
 }
 
-/// What so many frames of so many markers will use, with what is written of them: as measured with 60,000 and a million.
+/// The need of so many frames of so many markers, with their files, as measured with 60,000 and a million markers.
 fn need_of_markers(markers: f64, frames: usize) -> Need {
     let instants = frames as f64;
     Need {

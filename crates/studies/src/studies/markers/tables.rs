@@ -10,7 +10,7 @@ use crate::problem::SheetLaws;
 use crate::results::cell_states;
 use crate::studies::markers::MarkerStudy;
 
-/// A row of a table; a number that is none leaves its field empty.
+/// Adds a row to a table; a value that is not finite leaves its field empty.
 fn row(text: &mut String, first: &[usize], values: &[f64]) {
     let first = first.iter().map(ToString::to_string);
     let values = values.iter().map(|value| finite(*value));
@@ -18,7 +18,7 @@ fn row(text: &mut String, first: &[usize], values: &[f64]) {
     let _ = writeln!(text, "{}", fields.join(","));
 }
 
-/// A number with ten digits; nothing where it is none.
+/// A number with ten digits; empty where it is not finite.
 fn finite(value: f64) -> String {
     if value.is_finite() {
         format!("{value:.9e}")
@@ -27,7 +27,7 @@ fn finite(value: f64) -> String {
     }
 }
 
-/// The name of a standard error; where the data are not explained it is none, and the name says so.
+/// The name of a standard error; where the data are not explained it is no measure of the error, and the name says so.
 fn error(estimate: &FieldEstimate) -> &'static str {
     if estimate.has_intervals() {
         "standard_error"

@@ -12,7 +12,7 @@ use crate::results::{Block, Table};
 use crate::statistics::extremes;
 use crate::units::decimals;
 
-/// Alternatives that are shown in the terminal.
+/// The largest number of alternatives that are shown in the terminal.
 const SHOWN: usize = 5;
 
 /// The answers that frames have, the worst first.
@@ -129,7 +129,7 @@ pub(super) fn reasons(verdict: &Verdict) -> Vec<String> {
     verdict.reasons.iter().copied().map(Reason::words).collect()
 }
 
-/// A residual that is known, in mm.
+/// A residual in mm; `None` where it is not known.
 fn residual(rms: f64) -> Option<String> {
     rms.is_finite().then(|| decimals(rms, 5))
 }
@@ -143,7 +143,7 @@ fn trial_words(study: &MarkerStudy, trial: &Trial) -> String {
     }
 }
 
-/// The distance of the outermost markers from the edge to state instead, where an alternative is that of another one.
+/// The edge gap to state instead, where an alternative moves the outline.
 pub(super) fn other_gap(study: &MarkerStudy, alternative: &Alternative) -> Option<String> {
     let Alternative::MovedEdge {
         part: MovedPart::Outline,

@@ -7,7 +7,7 @@ use crate::mesh::{Outline, OutlineFault, OutlineOfPoints};
 use crate::studies::images::IMAGES;
 use crate::units::{decimals, extents};
 
-/// Outermost markers farther than this from their outline, in spacings, leave it open where the edge lies.
+/// Distance of the outermost markers from their outline, in spacings, from which on the edge is not known exactly.
 const ROUGH: f64 = 0.01;
 
 /// What to do where markers do not show the edge.
@@ -19,17 +19,17 @@ pub(super) fn no_mesh(reason: OutlineFault) -> Error {
 }
 
 /// The position of the edge outside of the outermost markers.
-pub(super) struct EdgePlace {
+pub(super) struct EdgePosition {
     /// The outline of the markers brought to the edge.
     pub outline: Outline,
-    /// How far outside of the outline the edge may lie all the same, in mm.
+    /// How far outside of this outline the edge may still lie, in mm; `None` where the edge is known.
     pub unknown_gap: Option<f64>,
     /// How far the outline is widened, for the origin of the mesh.
     pub origin: String,
     pub warning: Option<Diagnostic>,
 }
 
-impl EdgePlace {
+impl EdgePosition {
     /// The edge as the user states it, else half a subset outside, as subsets lie inside of the specimen, where files state the subset and
     /// it fits; else the markers' own outline.
     ///
@@ -64,8 +64,8 @@ impl EdgePlace {
         })
     }
 
-    /// A gap that the user states; beside a grid, edges that are not along it may lie up to a step farther out, and where the
-    /// outermost markers do not lie on smooth lines, edges may be off by as much as these.
+    /// The edge at a gap that the user states. Where it is not parallel to the grid of the markers, it may lie up to a spacing farther out, and
+    /// where the outermost markers do not lie on smooth lines, by as much as these are off.
     fn stated(gap: f64, markers: OutlineOfPoints, beside_grid: bool) -> Result<Self, Error> {
         let [length, width] = markers.outline.extents();
         if gap > length.max(width) {
@@ -103,8 +103,8 @@ impl EdgePlace {
         })
     }
 
-    /// An outline that is half a subset wider than the markers': the edge is less than a step farther out. In images, subsets beside the specimen
-    /// move with the part of them that shows it.
+    /// The edge half a subset outside of the outermost markers, from which it is less than a step away. In images, subsets whose centres are
+    /// outside of the specimen may be followed too, with the part of them that shows it.
     fn of_subset(subset: &Subset, pixel: f64, outline: Outline, is_of_images: bool) -> Self {
         let [half, step] = [0.5 * subset.size, subset.step].map(|pixels| pixels * pixel);
         let wider = decimals(half, 4);
@@ -137,9 +137,10 @@ impl EdgePlace {
 
 /// Whether markers form a grid along x and y whose outline is not the rectangle of that grid.
 pub(super) fn is_beside_grid(positions: &[[f64; 2]], outline: &Outline, spacing: f64) -> bool {
-    /// A grid has as many places as lines along x times lines along y, where its rectangle is full; scattered markers have nearly their square.
+    /// The largest ratio of the number of lines along x times that of lines along y to the number of markers in a grid: 1 where the grid's
+    /// rectangle is full, and of scattered markers nearly their number.
     const SPARSE: usize = 8;
-    /// The share of the rectangle that is filled at least.
+    /// The share of its rectangle above which a grid is full.
     const FULL: f64 = 0.97;
     let lines = |axis: usize| {
         let mut positions: Vec<f64> = positions.iter().map(|position| position[axis]).collect();
