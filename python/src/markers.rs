@@ -13,6 +13,7 @@ use gelbench::studies::markers::{Conditions, MarkerStudy, MeshSource, Request};
 use gelbench::units::{self, Dimension};
 use gelbench_studies::studies::markers::worst_answer;
 use gelbench_studies::studies::markers::written::{self, FrameFiles, SERIES};
+use gelbench_studies::studies::pictures::Pictures;
 use pyo3::prelude::*;
 use std::time::Instant;
 
@@ -192,7 +193,8 @@ pub fn correct(
         let tell = |frame: &Frame| watch.tell(&format!("frame {}", frame.number));
         let estimates = study.estimate(&tell)?;
         let seconds = start.elapsed().as_secs_f64();
-        let results = written::results(&study, &estimates, name, known, seconds);
+        let pictures = Pictures::default();
+        let results = written::results(&pictures, &study, &estimates, name, known, seconds);
         let mut of_frames = OfFrames {
             series: SERIES
                 .map(|name| GridSeries {

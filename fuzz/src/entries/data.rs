@@ -21,6 +21,7 @@ use gelbench_report::results::{
     fit_json, fit_picture, identification_json, identification_picture,
 };
 use gelbench_studies::studies::markers::{measured_force, written};
+use gelbench_studies::studies::pictures::Pictures;
 
 use super::choices::Choices;
 use super::{Became, with_file};
@@ -54,7 +55,8 @@ pub fn correct(bytes: &[u8]) -> Became {
         match result {
             Ok((estimates, field)) => {
                 let _ = field.all_doubts(&estimates);
-                let _ = written::results(&field, &estimates, "markers".into(), String::new(), 0.0);
+                let (pictures, name) = (Pictures::default(), "markers".to_owned());
+                let _ = written::results(&pictures, &field, &estimates, name, String::new(), 0.0);
                 Became::Complete
             }
             Err(Error::Solve { .. }) => Became::Unsolved,

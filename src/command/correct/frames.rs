@@ -35,7 +35,7 @@ pub fn correct(field: &mut MarkerStudy, job: Job) -> Result<(Vec<FieldEstimate>,
     folder.add("vtk/view.py", output::vtk::VIEW.as_bytes())?;
     let seconds = start.elapsed().as_secs_f64();
     progress.tell("files");
-    let results = written::results_with(
+    let results = written::results(
         &job.pictures,
         field,
         &estimates,

@@ -16,6 +16,7 @@ use gelbench_mechanics::problem::SheetLaws;
 use gelbench_report::output::{self, vtk};
 use gelbench_report::results::{Panel, mesh_outlines, nodal_states};
 use gelbench_studies::studies::markers::written::{self, FrameFiles, SERIES, played};
+use gelbench_studies::studies::pictures::Pictures;
 
 use super::background::Worker;
 use super::engine::Fault;
@@ -200,7 +201,8 @@ fn results(
     let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
     let known = edges::written(&question.edges, &question.edge_gap);
     let seconds = begun.elapsed().as_secs_f64();
-    written::results(study, estimates, stem.to_owned(), known, seconds)
+    let pictures = Pictures::default();
+    written::results(&pictures, study, estimates, stem.to_owned(), known, seconds)
 }
 
 /// Everything that `gelbench correct` writes, what it is told of the specimen, and the line that does it again.

@@ -27,18 +27,6 @@ pub const KIND: &str = "markers";
 /// The results of a correction except the [`FrameFiles`], with the study's `name` and `text`, empty where there is none, and after
 /// `seconds`.
 pub fn results(
-    field: &MarkerStudy,
-    estimates: &[FieldEstimate],
-    name: String,
-    text: String,
-    seconds: f64,
-) -> Results {
-    let pictures = Pictures::default();
-    results_with(&pictures, field, estimates, name, text, seconds)
-}
-
-/// The same, with the pictures that are wanted.
-pub fn results_with(
     pictures: &Pictures,
     field: &MarkerStudy,
     estimates: &[FieldEstimate],
