@@ -22,8 +22,8 @@ impl Region {
     /// where pixels only step along a line. Specks are left out.
     pub fn edge(&self) -> Vec<Vec<[f64; 2]>> {
         let steps = self.steps();
-        let lines = steps.iter().map(|line| straightened(&smoothed(line), FAR));
-        let mut lines: Vec<Vec<[f64; 2]>> = lines.collect();
+        let straight = |line: &Vec<[f64; 2]>| straightened(&smoothed(line), FAR);
+        let mut lines: Vec<Vec<[f64; 2]>> = steps.iter().map(straight).collect();
         let largest = lines.iter().map(|line| area(line)).fold(0.0, f64::max);
         lines.retain(|line| line.len() > 2 && area(line) > SPECK * largest);
         lines

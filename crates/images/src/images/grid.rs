@@ -41,16 +41,19 @@ impl Grid {
             }
         }
         let around = |[x, y]: [usize; 2]| {
-            let [column, row] =
-                [(x - starts[0]) / spacing, (y - starts[1]) / spacing].map(|at| at as isize);
-            let inside = |at: isize, count: usize| (0..count as isize).contains(&at);
-            let cells = (-1..=1).flat_map(|down| (-1..=1).map(move |along| (along, down)));
-            let cells = cells
-                .filter(|cell| *cell != (0, 0))
-                .map(|(along, down)| (column + along, row + down));
-            let cells = cells.filter(|(x, y)| inside(*x, counts[0]) && inside(*y, counts[1]));
-            cells
-                .filter_map(|(x, y)| numbers[y as usize * counts[0] + x as usize])
+            let [column, row] = [(x - starts[0]) / spacing, (y - starts[1]) / spacing];
+            let neighbour = |(along, down): (isize, isize)| -> Option<usize> {
+                let column = column.checked_add_signed(along)?;
+                let row = row.checked_add_signed(down)?;
+                if column >= counts[0] || row >= counts[1] {
+                    return None;
+                }
+                numbers[row * counts[0] + column]
+            };
+            let steps = (-1..=1).flat_map(|down| (-1..=1).map(move |along| (along, down)));
+            steps
+                .filter(|step| *step != (0, 0))
+                .filter_map(neighbour)
                 .collect()
         };
         Self {
@@ -103,11 +106,10 @@ impl Follower<'_> {
             .filter(|point| matches[*point].is_some())
             .collect();
         while !fresh.is_empty() {
-            let next = fresh
+            let mut next: Vec<usize> = fresh
                 .iter()
                 .flat_map(|point| &self.neighbours[*point])
-                .copied();
-            let mut next: Vec<usize> = next
+                .copied()
                 .filter(|point| matches[*point].is_none() && attempts[*point] < MOST_ATTEMPTS)
                 .collect();
             next.sort_unstable();

@@ -54,8 +54,10 @@ impl Classes {
 
     /// The line through the mean squares, each weighted by its precision.
     pub fn noise(&self) -> Option<Noise> {
-        let means = self.classes.iter().filter(|[count, ..]| *count >= 30.0);
-        let means: Vec<[f64; 3]> = means
+        let means: Vec<[f64; 3]> = self
+            .classes
+            .iter()
+            .filter(|[count, ..]| *count >= 30.0)
             .map(|[n, i, s]| [*n, i / n, (s / n).max(1e-12)])
             .collect();
         let total: f64 = means.iter().map(|[n, ..]| n).sum();

@@ -85,8 +85,9 @@ impl Patches<'_> {
         about: &(dyn Fn(usize) -> Option<Warp> + Sync),
     ) -> Vec<Option<Tracked>> {
         let points = self.layout.points.par_iter();
-        let measured = points.map(|&number| self.measure_one(spline, number, about(number)?));
-        let measured: Vec<Option<Tracked>> = measured.collect();
+        let measured: Vec<Option<Tracked>> = points
+            .map(|&number| self.measure_one(spline, number, about(number)?))
+            .collect();
         let mut all = vec![None; self.tracker.grid.points.len()];
         for (number, one) in self.layout.points.iter().zip(measured) {
             all[*number] = one;

@@ -89,8 +89,7 @@ impl<'a> Pyramid<'a> {
     /// Finds a subset about a pixel of the reference.
     pub fn seek(&self, centre: [usize; 2]) -> Option<Match> {
         self.refine(centre, Warp::default()).or_else(|| {
-            let candidates = self.correlate(centre, Matrix2::identity());
-            let mut candidates = candidates.into_iter();
+            let mut candidates = self.correlate(centre, Matrix2::identity()).into_iter();
             candidates.find_map(|(_, warp)| self.refine(centre, warp))
         })
     }
@@ -116,8 +115,10 @@ impl<'a> Pyramid<'a> {
                 STRETCHES.map(|[x, y]| turn.matrix() * Matrix2::new(x, 0.0, 0.0, y))
             })
             .collect();
-        let candidates = all.par_iter().flat_map_iter(|f| self.correlate(centre, *f));
-        let mut candidates: Vec<(f64, Warp)> = candidates.collect();
+        let mut candidates: Vec<(f64, Warp)> = all
+            .par_iter()
+            .flat_map_iter(|f| self.correlate(centre, *f))
+            .collect();
         candidates.sort_by(|a, b| b.0.total_cmp(&a.0));
         let best = candidates.into_iter().take(BEST);
         let refined = best.filter_map(|(_, warp)| self.refine(centre, warp));
@@ -141,10 +142,10 @@ impl<'a> Pyramid<'a> {
             ..
         } = *self.follower;
         let subset = |order| Subset::new(reference, centre, half, order, noise);
-        let fit = subset(Order::Affine)?.find(self.spline, warp, noise)?;
+        let affine = subset(Order::Affine)?.find(self.spline, warp, noise)?;
         let fit = match order {
-            Order::Affine => fit,
-            order => subset(order)?.find(self.spline, fit.warp, noise)?,
+            Order::Affine => affine,
+            order => subset(order)?.find(self.spline, affine.warp, noise)?,
         };
         (fit.similarity >= LEAST_SIMILARITY).then_some(fit)
     }

@@ -91,10 +91,10 @@ fn typical(grid: &Grid, subset: &(dyn Fn([usize; 2]) -> Option<Subset> + Sync)) 
     const SAMPLE: usize = 200;
     let every = (grid.points.len() / SAMPLE).max(1);
     let sample: Vec<[usize; 2]> = grid.points.iter().step_by(every).copied().collect();
-    let deviations = sample
-        .par_iter()
-        .map(|point| subset(*point).map_or(f64::INFINITY, |subset| subset.expected_deviation()));
-    let mut deviations: Vec<f64> = deviations.collect();
+    let deviation = |point: &[usize; 2]| {
+        subset(*point).map_or(f64::INFINITY, |subset| subset.expected_deviation())
+    };
+    let mut deviations: Vec<f64> = sample.par_iter().map(deviation).collect();
     deviations.sort_by(f64::total_cmp);
     deviations
         .get(deviations.len() / 4)

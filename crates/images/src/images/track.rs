@@ -103,11 +103,11 @@ impl Tracker {
             let subset = Subset::new(&reference, *point, half, settings.order, &noise);
             subset.is_some_and(|subset| subset.expected_deviation() < KNOWN)
         };
-        let centres = grid
+        let centres: Vec<Option<[usize; 2]>> = grid
             .points
             .par_iter()
-            .map(|point| has_pattern(point).then_some(*point));
-        let centres: Vec<Option<[usize; 2]>> = centres.collect();
+            .map(|point| has_pattern(point).then_some(*point))
+            .collect();
         if centres.iter().flatten().count() < 3 {
             let message = "the specimen shows no pattern that could be followed";
             let hint = "take sharper images of a speckled specimen, or check the mask or outline";
@@ -223,10 +223,9 @@ impl Tracker {
                 .filter(|point| before[*point].is_some())
                 .collect();
             for every in [SAMPLED, 1] {
-                let points = known.iter().copied().step_by(every);
-                let points = points.filter(|point| matches[*point].is_none());
-                let guesses =
-                    points.filter_map(|point| Some((point, before[point].as_ref()?.warp)));
+                let sampled = known.iter().copied().step_by(every);
+                let open = sampled.filter(|point| matches[*point].is_none());
+                let guesses = open.filter_map(|point| Some((point, before[point].as_ref()?.warp)));
                 for (point, one) in follower.find_all(spline, guesses.collect()) {
                     matches[point] = one;
                 }

@@ -70,7 +70,6 @@ pub fn results(tracked: &TrackedImages, name: String, seconds: f64) -> Results {
 /// The markers of all frames.
 fn table(tracked: &TrackedImages) -> String {
     let mut text = String::from("frame,id,x [mm],y [mm],ux [mm],uy [mm],standard_deviation [mm]\n");
-    let length = |value: f64| format!("{value:.7}");
     for frame in &tracked.series.frames {
         for Marker {
             number,
@@ -79,11 +78,12 @@ fn table(tracked: &TrackedImages) -> String {
             standard_deviation,
         } in &frame.markers
         {
-            let lengths = position
+            let lengths: Vec<String> = position
                 .iter()
                 .chain(displacement)
-                .chain(standard_deviation);
-            let lengths: Vec<String> = lengths.map(|value| length(*value)).collect();
+                .chain(standard_deviation)
+                .map(|value| format!("{value:.7}"))
+                .collect();
             let _ = writeln!(text, "{},{number},{}", frame.number, lengths.join(","));
         }
     }
@@ -181,11 +181,11 @@ fn step(tracked: &TrackedImages, frame: &Frame) -> Step {
 /// Frames in which many points are lost, and a pattern that contradicts their displacements.
 fn findings(tracked: &TrackedImages, contradicted: Option<&Diagnostic>) -> Vec<Finding> {
     const MANY: f64 = 0.1;
-    // The specimen is seldom smaller beside its image, where neither outline nor mask says where it is.
+    // Where neither outline nor mask is given, the specimen seldom covers less than this share of the image's points.
     const LEAST: usize = 4;
     let frames = &tracked.series.frames;
-    let most = frames.iter().map(|frame| frame.markers.len()).max();
-    let most = most.unwrap_or(0).max(tracked.points() / LEAST);
+    let found = frames.iter().map(|frame| frame.markers.len()).max();
+    let most = found.unwrap_or(0).max(tracked.points() / LEAST);
     let has_few = |frame: &&Frame| ((most - frame.markers.len()) as f64) > MANY * most as f64;
     let all: Vec<usize> = frames.iter().map(|frame| frame.number).collect();
     let few: Vec<usize> = frames
@@ -197,9 +197,8 @@ fn findings(tracked: &TrackedImages, contradicted: Option<&Diagnostic>) -> Vec<F
     let remedy = "look at these images: the pattern leaves them, is covered, or changes";
     let finding =
         (!few.is_empty()).then(|| Finding::warning("lost-points", (message(), remedy.to_owned())));
-    let contradicted = contradicted.cloned().into_iter();
-    let contradicted = contradicted.map(|doubt| Finding::doubt_of("repeated-pattern", doubt));
-    finding.into_iter().chain(contradicted).collect()
+    let doubt = contradicted.map(|doubt| Finding::doubt_of("repeated-pattern", doubt.clone()));
+    finding.into_iter().chain(doubt).collect()
 }
 
 fn figures(tracked: &TrackedImages, frame: &Frame) -> Vec<Figure> {

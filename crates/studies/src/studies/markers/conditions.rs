@@ -182,14 +182,14 @@ impl Conditions {
             ("force", !self.forces.is_empty()),
             ("fit", !self.fit.is_empty()),
         ];
-        let stated = stated.iter().filter(|(_, is_stated)| *is_stated);
-        let stated: Vec<&str> = stated.map(|(key, _)| *key).collect();
+        let ignored = stated.iter().filter(|(_, is_stated)| *is_stated);
+        let keys: Vec<&str> = ignored.map(|(key, _)| *key).collect();
         let message = format!(
             "a field that is transferred from its own mesh to another one is treated as computed, without noise; ignored: {}",
-            stated.join(", ")
+            keys.join(", ")
         );
         let hint = "give a measured field as a table of its markers: x, y, ux, uy";
-        (!stated.is_empty()).then(|| Diagnostic::warning("", message).hint(hint))
+        (!keys.is_empty()).then(|| Diagnostic::warning("", message).hint(hint))
     }
 
     /// The law with parameters to be estimated, if there are any.
@@ -204,9 +204,9 @@ impl Conditions {
 
     /// The conditions of a frame's estimate; the law is regressed only in frames with a force.
     pub fn knowledge(&self, frame: usize, law: Option<&RegressedLaw>) -> Knowledge {
-        let forces = self.forces.iter();
-        let forces = forces.filter(|(of, _)| of.is_none_or(|number| number == frame));
-        let forces: Vec<_> = forces.map(|(_, force)| force.clone()).collect();
+        let is_of_frame = |number: Option<usize>| number.is_none_or(|number| number == frame);
+        let of_frame = self.forces.iter().filter(|(of, _)| is_of_frame(*of));
+        let forces: Vec<_> = of_frame.map(|(_, force)| force.clone()).collect();
         Knowledge {
             edges: self.edges.clone(),
             scale_deviation: self.scale_deviation,

@@ -120,8 +120,8 @@ fn unknown_edge(_: &MarkerStudy, estimate: &FieldEstimate) -> Option<Doubt> {
 
 fn contradicted_edges(study: &MarkerStudy, estimate: &FieldEstimate) -> Option<Doubt> {
     let contradiction = estimate.contradiction.as_ref()?;
-    let names = contradiction.edges.iter().map(|(name, _)| name.as_str());
-    let mut names = names.collect::<Vec<_>>().join(", ");
+    let edges = contradiction.edges.iter().map(|(name, _)| name.as_str());
+    let mut names = edges.collect::<Vec<_>>().join(", ");
     if names.is_empty() {
         names = "all edges together".to_owned();
     }
@@ -143,8 +143,8 @@ fn contradicted_edges(study: &MarkerStudy, estimate: &FieldEstimate) -> Option<D
 /// The measured force that is farthest from that of the field.
 fn contradicted_force(estimate: &FieldEstimate) -> Option<Doubt> {
     let size = |check: &&ForceCheck| check.standardised.abs();
-    let wrong = estimate.force_checks.iter();
-    let wrong = wrong.filter(|check| check.contradicts());
+    let checks = estimate.force_checks.iter();
+    let wrong = checks.filter(|check| check.contradicts());
     let worst = wrong.max_by(|a, b| size(a).total_cmp(&size(b)))?;
     let measured = &worst.measured;
     let message = format!(
@@ -254,8 +254,8 @@ fn beyond_card(study: &MarkerStudy, estimate: &FieldEstimate) -> Option<Doubt> {
             return None;
         }
         let stretches = Stretches::new(card, (mesh, cells), field);
-        let reason = stretches.reason(card, "");
-        let reason = reason.filter(|_| stretches.share > BESIDE_CORNERS)?;
+        let is_large = stretches.share > BESIDE_CORNERS;
+        let reason = stretches.reason(card, "").filter(|_| is_large)?;
         Some((reason, String::new()))
     });
     Some((

@@ -168,13 +168,15 @@ pub fn scale_paragraph(estimate: &FieldEstimate, deviation: f64) -> Option<Strin
 
 /// A line where such an error changes a force by more than its interval allows, and the scale is not stated.
 pub fn scale_line(frame: usize, estimate: &FieldEstimate, deviation: f64) -> Option<String> {
-    let mut changes = changes(estimate);
-    changes.retain(|changed| {
+    if deviation != 0.0 || !estimate.is_explained() {
+        return None;
+    }
+    let is_large = |changed: &Changed| {
         let [low, high] = changed.force.interval;
         changed.change > 0.5 * (high - low)
-    });
-    let worst = changes.iter().max_by(|a, b| a.change.total_cmp(&b.change));
-    let worst = worst.filter(|_| deviation == 0.0 && estimate.is_explained())?;
+    };
+    let large = changes(estimate).into_iter().filter(is_large);
+    let worst = large.max_by(|a, b| a.change.total_cmp(&b.change))?;
     Some(format!(
         "a scale error of {} % in the picture of frame {frame} would change the force on {}, more than its interval allows: state it with --scale-error",
         100.0 * SCALE_ERROR,

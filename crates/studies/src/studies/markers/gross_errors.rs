@@ -90,10 +90,10 @@ fn judged_with(mut estimate: FieldEstimate, without: Option<FieldEstimate>) -> F
 }
 
 fn has_gross_errors(estimate: &FieldEstimate) -> bool {
-    let outliers = estimate.markers.iter().flatten();
-    let outliers = outliers.filter(|marker| marker.outlier);
-    let largest = outliers.map(|marker| marker.standardised_residual);
-    let largest = largest.fold(0.0, f64::max);
+    let markers = estimate.markers.iter().flatten();
+    let outliers = markers.filter(|marker| marker.outlier);
+    let residuals = outliers.map(|marker| marker.standardised_residual);
+    let largest = residuals.fold(0.0, f64::max);
     used(estimate) as f64 * (-0.5 * largest * largest).exp() < CHANCE
 }
 

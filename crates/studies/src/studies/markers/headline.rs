@@ -38,10 +38,15 @@ pub fn headline(study: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> 
         gauge: None,
     };
     blocks.extend(sheet.largest());
-    let note = [forces_note(study, estimates), sheet.note()];
-    let note = note.into_iter().flatten().chain(basis(study, last));
-    let note = note.collect::<Vec<_>>().join(" ");
-    blocks.extend((!note.is_empty()).then_some(Block::Paragraph(note)));
+    let notes: Vec<String> = [
+        forces_note(study, estimates),
+        sheet.note(),
+        basis(study, last),
+    ]
+    .into_iter()
+    .flatten()
+    .collect();
+    blocks.extend((!notes.is_empty()).then(|| Block::Paragraph(notes.join(" "))));
     blocks
 }
 
@@ -94,8 +99,8 @@ fn forces(study: &MarkerStudy, estimates: &[FieldEstimate]) -> Block {
     if let Some(gap) = study.unknown_gap.filter(|_| has_intervals) {
         let head = format!("up to, if the edge lies {} mm farther out [N]", number(gap));
         table = table.column(head, |(_, estimate, force)| {
-            let ends = force.force.iter();
-            let ends = ends.filter_map(|along| farther_out(estimate, along));
+            let along_axes = force.force.iter();
+            let ends = along_axes.filter_map(|along| farther_out(estimate, along));
             or_dash(ends.max_by(|a, b| a.abs().total_cmp(&b.abs())), number)
         });
     }

@@ -59,12 +59,12 @@ impl MarkerStudy {
         };
         let measured: Vec<Option<Measured>> = if misfit.are_precise {
             let together = self.series.frames.chunks(4 * rayon::current_num_threads());
-            let measured = together.map(|frames| {
+            let measured = |frames: &[Frame]| -> Vec<Option<Measured>> {
                 frames.iter().for_each(report);
-                let frames = frames.par_iter().map(|frame| misfit.about_tracked(frame));
-                frames.collect::<Vec<_>>()
-            });
-            measured.flatten().collect()
+                let frames = frames.par_iter();
+                frames.map(|frame| misfit.about_tracked(frame)).collect()
+            };
+            together.flat_map(measured).collect()
         } else {
             misfit.in_turn(&report)
         };
@@ -112,12 +112,9 @@ impl ImageMisfit<'_> {
         let mut before = vec![0.0; 2 * self.study.mesh.nodes.len()];
         let frames = self.study.series.frames.iter().map(|frame| {
             report(frame);
-            let starts = [
-                self.settled(frame, before.clone()),
-                self.about_tracked(frame),
-            ];
-            let starts = starts.into_iter().flatten();
-            let best = starts.max_by(|a, b| a.similarity.total_cmp(&b.similarity))?;
+            let from_before = self.settled(frame, before.clone());
+            let both = from_before.into_iter().chain(self.about_tracked(frame));
+            let best = both.max_by(|a, b| a.similarity.total_cmp(&b.similarity))?;
             before.clone_from(&best.displacement);
             Some(best)
         });

@@ -54,9 +54,9 @@ pub fn step(field: &MarkerStudy, frame: &Frame, estimate: &FieldEstimate) -> Ste
 
 fn of_frame(field: &MarkerStudy, frame: &Frame, estimate: &FieldEstimate) -> Value {
     let of = |value: &Estimate| of_estimate(value, estimate.has_intervals());
-    let parameters = estimate.parameters.iter();
-    let parameters = parameters
-        .map(|(key, unit, value)| json!({ "key": key, "unit": unit, "found": of(value) }));
+    let found = estimate.parameters.iter();
+    let parameters =
+        found.map(|(key, unit, value)| json!({ "key": key, "unit": unit, "found": of(value) }));
     let checks = estimate.force_checks.iter().map(|check| {
         json!({
             "edge": check.measured.edge,
@@ -66,8 +66,8 @@ fn of_frame(field: &MarkerStudy, frame: &Frame, estimate: &FieldEstimate) -> Val
             "standardised_difference": check.standardised,
         })
     });
-    let free = estimate.edges.iter();
-    let free = free.filter(|edge| edge.condition == EdgeCondition::Free);
+    let edges = estimate.edges.iter();
+    let free = edges.filter(|edge| edge.condition == EdgeCondition::Free);
     json!({
         "time": frame.time,
         "markers": used(estimate),

@@ -152,8 +152,8 @@ fn matching(table: &Table) -> Result<Match, Error> {
         return Err(table.refuse_columns("there is neither a column `frame` nor `time`", hint));
     };
     let second = columns::seconds(table, column)?;
-    let times = values(column)?.into_iter();
-    let times: Vec<f64> = times.map(|time| second * time).collect();
+    let mut times = values(column)?;
+    times.iter_mut().for_each(|time| *time *= second);
     match times.windows(2).position(|pair| pair[1] <= pair[0]) {
         None => Ok(Match::Times(times)),
         Some(row) => {

@@ -45,14 +45,12 @@ pub(super) fn card_warnings(
     let cards = SheetCards { card, regions };
     let mut all: Vec<Diagnostic> = Vec::new();
     for card in cards.all() {
-        let left_out = card.viscosity.left_out();
-        let left_out = left_out.map(|left_out| {
+        let left_out = card.viscosity.left_out().map(|left_out| {
             Diagnostic::warning("", left_out)
                 .hint("use a card fitted to tests at the rate of this experiment")
         });
-        let warnings = card.warnings().into_iter();
-        let warnings = warnings.chain(too_stiff(&*card.law, mesh)).chain(left_out);
-        for warning in warnings {
+        let of_card = card.warnings().into_iter();
+        for warning in of_card.chain(too_stiff(&*card.law, mesh)).chain(left_out) {
             if !all.contains(&warning) {
                 all.push(warning);
             }

@@ -9,13 +9,13 @@ pub fn blocks(understood: &Understood) -> Vec<Block> {
         return Vec::new();
     }
     let encoding = understood.encoding.map(|name| format!("Text in {name}. "));
-    let part = understood.part.as_ref();
-    let part = part.map(|name| format!("The table `{name}` of the file. "));
+    let table = understood.part.as_ref();
+    let part = table.map(|name| format!("The table `{name}` of the file. "));
     let mut words = encoding.or(part).unwrap_or_default();
     words += understood.axes();
-    words += &understood
-        .positions()
-        .map_or(String::new(), |positions| format!(" {positions}"));
+    if let Some(positions) = understood.positions() {
+        words += &format!(" {positions}");
+    }
     let mut blocks = vec![
         Block::heading("How the file was read"),
         Block::paragraph(words),
@@ -30,11 +30,8 @@ pub fn blocks(understood: &Understood) -> Vec<Block> {
             .column("source of the unit", |taken| taken.unit_source.to_owned());
         blocks.push(table.block());
     }
-    blocks.extend(
-        understood
-            .sketch()
-            .map(|sketch| Block::Code("text", sketch.to_owned())),
-    );
+    let sketch = understood.sketch();
+    blocks.extend(sketch.map(|sketch| Block::Code("text", sketch.to_owned())));
     blocks
 }
 
@@ -45,7 +42,7 @@ pub fn short(understood: &Understood) -> String {
     } else {
         ""
     };
-    let part = understood.part.as_ref();
-    let part = part.map_or(String::new(), |name| format!(" of `{name}`"));
+    let table = understood.part.as_ref();
+    let part = table.map_or(String::new(), |name| format!(" of `{name}`"));
     format!("{}{part}{turned}", understood.layout)
 }

@@ -63,8 +63,8 @@ impl MarkerStudy {
 
 /// A remark where the mesh rather than the noise makes the intervals of stress wide.
 pub(super) fn remark(field: &MarkerStudy, estimates: &[FieldEstimate]) -> Option<String> {
-    let shares = field.frames_with(estimates);
-    let shares = shares.map(|(frame, estimate)| (frame.number, estimate.coarse_share(&field.mesh)));
+    let frames = field.frames_with(estimates);
+    let shares = frames.map(|(frame, estimate)| (frame.number, estimate.coarse_share(&field.mesh)));
     let (number, share) = shares.max_by(|a, b| a.1.total_cmp(&b.1))?;
     (share > COARSE).then(|| {
         let remedy = match field.cell_size {

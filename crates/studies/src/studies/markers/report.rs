@@ -112,8 +112,8 @@ pub fn blocks(study: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> {
     blocks.extend(remarks.map(Block::paragraph));
     let last = estimates.last();
     let deviation = study.conditions.scale_deviation;
-    let words = last.and_then(|last| scale_paragraph(last, deviation));
-    let words = words.into_iter().chain(unknown_edge(study, estimates));
+    let scale = last.and_then(|last| scale_paragraph(last, deviation));
+    let words = scale.into_iter().chain(unknown_edge(study, estimates));
     blocks.extend(words.map(Block::paragraph));
     blocks.extend(reading::blocks(&study.understood));
     if let Some(last) = last {

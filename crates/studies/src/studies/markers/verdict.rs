@@ -113,8 +113,7 @@ fn answers(study: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<String> {
 
 /// Frames with one answer, one after the other: `4`, `4, 9`, `4 to 34`, and over which lengths their noise correlates.
 fn run_words(run: &[(usize, &Verdict)], answer: Answer) -> String {
-    let numbers: Vec<usize> = run.iter().map(|(number, _)| *number).collect();
-    let numbers = span(&numbers);
+    let numbers = span(&run.iter().map(|(number, _)| *number).collect::<Vec<_>>());
     let lengths = run.iter().filter_map(|(_, verdict)| verdict.correlation);
     let [low, high] = extremes(lengths.map(|one| one.length));
     match (answer, low < high) {

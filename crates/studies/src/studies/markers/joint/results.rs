@@ -82,8 +82,9 @@ fn force_scatter(estimate: &JointEstimate) -> Option<String> {
 
 /// The combinations of parameters that the data do not determine, and on which the intervals of the others are conditional.
 pub fn undetermined(estimate: &JointEstimate) -> Option<String> {
-    let open = report::undetermined(estimate);
-    let open: Vec<String> = open.map(|one| report::combination(estimate, one)).collect();
+    let open: Vec<String> = report::undetermined(estimate)
+        .map(|direction| report::combination(estimate, direction))
+        .collect();
     (!open.is_empty()).then(|| {
         format!(
             "not determined by these frames, and kept as on the card: {}; the other parameters and their intervals assume that this is known: start \
@@ -142,8 +143,8 @@ fn problem(
             "fault": (!law.fault.is_empty()).then_some(law.fault),
         })
     });
-    let forces = report::forces(study, estimate);
-    let forces = forces.iter().map(|(name, frame, force)| {
+    let rows = report::forces(study, estimate);
+    let forces = rows.iter().map(|(name, frame, force)| {
         json!({
             "specimen": name,
             "frame": frame,
