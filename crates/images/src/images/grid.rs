@@ -128,50 +128,59 @@ impl Follower<'_> {
         }
     }
 
-    /// The field of the most similar neighbour, at a point.
+    /// The field of a matched neighbour, about a point.
+    fn field_of(&self, neighbour: usize, point: usize, matches: &[Option<Match>]) -> Option<Warp> {
+        let ([x, y], [a, b]) = (self.centres[point]?, self.centres[neighbour]?);
+        let warp = matches[neighbour].as_ref()?.warp;
+        Some(warp.moved(x as f64 - a as f64, y as f64 - b as f64))
+    }
+
+    /// The field of the most similar neighbour, about a point.
     fn guess(&self, point: usize, matches: &[Option<Match>]) -> Option<Warp> {
-        let known = self.neighbours[point]
-            .iter()
-            .filter_map(|other| Some((*other, matches[*other].as_ref()?)));
-        let (other, best) = known.max_by(|a, b| a.1.similarity.total_cmp(&b.1.similarity))?;
-        let ([x, y], [a, b]) = (self.centres[point]?, self.centres[other]?);
-        Some(best.warp.moved(x as f64 - a as f64, y as f64 - b as f64))
+        let similarity = |other: &usize| Some((*other, matches[*other].as_ref()?.similarity));
+        let known = self.neighbours[point].iter().filter_map(similarity);
+        let (best, _) = known.max_by(|a, b| a.1.total_cmp(&b.1))?;
+        self.field_of(best, point, matches)
     }
 
     /// Drops points whose displacement is far from the one that their neighbours' fields have there: by more than five standard deviations of
     /// these and a tenth of a pixel (as J. Westerweel, F. Scarano, Exp. Fluids 39, 1096 (2005), with gradients). Points with too few matched
     /// neighbours for this test are dropped too, as where the specimen leaves the image.
     pub fn drop_outliers(&self, matches: &mut [Option<Match>]) {
+        let far: Vec<usize> = (0..matches.len())
+            .filter(|point| self.is_outlier(*point, matches))
+            .collect();
+        far.iter().for_each(|point| matches[*point] = None);
+    }
+
+    /// Whether a match is one of those that [`Self::drop_outliers`] drops.
+    fn is_outlier(&self, point: usize, matches: &[Option<Match>]) -> bool {
         const FEWEST: usize = 3;
         const FAR: f64 = 5.0;
         const SURE: f64 = 0.1;
         const NORMAL: f64 = 1.4826;
-        let median = |values: &mut Vec<f64>| {
-            values.sort_by(f64::total_cmp);
-            values[values.len() / 2]
+        let (Some(fit), Some(_)) = (&matches[point], self.centres[point]) else {
+            return false;
         };
-        let is_far = |point: usize| {
-            let (Some(fit), Some([x, y])) = (&matches[point], self.centres[point]) else {
-                return false;
-            };
-            let there = self.neighbours[point].iter().filter_map(|other| {
-                let ([a, b], warp) = (self.centres[*other]?, matches[*other].as_ref()?.warp);
-                let moved = warp.moved(x as f64 - a as f64, y as f64 - b as f64);
-                Some(moved.displacement())
-            });
-            let there: Vec<[f64; 2]> = there.collect();
-            if there.len() < FEWEST {
-                return self.neighbours[point].len() >= FEWEST;
-            }
-            (0..2).any(|axis| {
-                let mut values: Vec<f64> = there.iter().map(|u| u[axis]).collect();
-                let middle = median(&mut values);
-                let mut off: Vec<f64> = values.iter().map(|value| (value - middle).abs()).collect();
-                let deviation = NORMAL * median(&mut off) + fit.covariance[(axis, axis)].sqrt();
-                (fit.warp.displacement()[axis] - middle).abs() > FAR * deviation + SURE
-            })
-        };
-        let far: Vec<usize> = (0..matches.len()).filter(|point| is_far(*point)).collect();
-        far.iter().for_each(|point| matches[*point] = None);
+        let neighbours = self.neighbours[point].iter();
+        let displacements: Vec<[f64; 2]> = neighbours
+            .filter_map(|other| Some(self.field_of(*other, point, matches)?.displacement()))
+            .collect();
+        if displacements.len() < FEWEST {
+            return self.neighbours[point].len() >= FEWEST;
+        }
+        (0..2).any(|axis| {
+            let values: Vec<f64> = displacements.iter().map(|u| u[axis]).collect();
+            let middle = upper_median(values.clone());
+            let off = values.iter().map(|value| (value - middle).abs()).collect();
+            let deviation = NORMAL * upper_median(off) + fit.covariance[(axis, axis)].sqrt();
+            (fit.warp.displacement()[axis] - middle).abs() > FAR * deviation + SURE
+        })
     }
+}
+
+/// The median of some values; the upper of the two middle ones where their number is even.
+fn upper_median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values[values.len() / 2]
 }

@@ -10,7 +10,7 @@ pub struct Region {
     inside: Vec<bool>,
 }
 
-/// The largest part of a mask's pixels that are neither white nor black, as along its edges.
+/// The largest share of a mask's pixels that may be neither white nor black, as along its edges.
 const MOST_GREY: f64 = 0.2;
 
 impl Region {
@@ -62,27 +62,12 @@ impl Region {
     pub fn of_lines(lines: &[Vec<[f64; 2]>], size: [usize; 2]) -> Result<Self, Error> {
         let mut inside = vec![false; size[0] * size[1]];
         for (y, row) in inside.chunks_mut(size[0]).enumerate() {
-            let height = y as f64;
-            let crossing = |pair: [[f64; 2]; 2]| {
-                let [[a, b], [c, d]] = pair;
-                ((b > height) != (d > height)).then(|| a + (height - b) / (d - b) * (c - a))
-            };
-            let ends = |line: &Vec<[f64; 2]>| {
-                let next = line.iter().cycle().skip(1).copied();
-                let pairs = line.iter().copied().zip(next);
-                pairs
-                    .filter_map(|(from, to)| crossing([from, to]))
-                    .collect::<Vec<_>>()
-            };
-            let mut crossings: Vec<f64> = lines.iter().flat_map(ends).collect();
-            crossings.sort_by(f64::total_cmp);
-            for pair in crossings.chunks_exact(2) {
+            for pair in crossings(lines, y as f64).chunks_exact(2) {
                 let from = pair[0].ceil().max(0.0) as usize;
                 let to = (pair[1].floor() + 1.0).clamp(0.0, row.len() as f64) as usize;
-                row.iter_mut()
-                    .take(to)
-                    .skip(from)
-                    .for_each(|flag| *flag = true);
+                if let Some(within) = row.get_mut(from..to) {
+                    within.fill(true);
+                }
             }
         }
         if !inside.contains(&true) {
@@ -120,6 +105,21 @@ impl Region {
     pub fn has(&self, x: usize, y: usize) -> bool {
         x < self.size[0] && y < self.size[1] && self.inside[y * self.size[0] + x]
     }
+}
+
+/// The x at which closed lines cross a row of pixels at a height, ascending.
+fn crossings(lines: &[Vec<[f64; 2]>], height: f64) -> Vec<f64> {
+    let mut crossings = Vec::new();
+    for line in lines {
+        let next = line.iter().cycle().skip(1);
+        for (&[a, b], &[c, d]) in line.iter().zip(next) {
+            if (b > height) != (d > height) {
+                crossings.push(a + (height - b) / (d - b) * (c - a));
+            }
+        }
+    }
+    crossings.sort_by(f64::total_cmp);
+    crossings
 }
 
 #[cfg(test)]
