@@ -84,7 +84,7 @@ impl Follower<'_> {
             self.order,
             self.noise,
         )?;
-        let fit = subset.find(image, guess, self.noise)?;
+        let fit = subset.find(image, guess)?;
         (fit.similarity >= LEAST_SIMILARITY).then_some(fit)
     }
 

@@ -96,13 +96,12 @@ impl Patches<'_> {
     }
 
     fn measure_one(&self, spline: &Spline, number: usize, guess: Warp) -> Option<Tracked> {
-        let Tracker { grid, noise, .. } = self.tracker;
         let patch = self.patch(number)?;
-        let (middle, point) = (patch.middle(), grid.points[number]);
+        let (middle, point) = (patch.middle(), self.tracker.grid.points[number]);
         let fit = if self.is_precise(&patch) {
-            patch.find(spline, guess, noise)?
+            patch.find(spline, guess)?
         } else {
-            patch.find_linear(spline, guess, noise)?
+            patch.find_linear(spline, guess)?
         };
         let [x, y] = [0, 1].map(|axis| middle[axis] - point[axis] as f64);
         let field = fit.warp.moved(x, y);

@@ -131,7 +131,7 @@ impl<'a> Pyramid<'a> {
         for (index, level) in self.coarse.iter().enumerate().rev() {
             let at = centre.map(|c| c >> (index + 1));
             let subset = Subset::new(&level.reference, at, HALF, Order::Affine, &level.noise);
-            let fit = subset.and_then(|subset| subset.find(&level.spline, warp, &level.noise));
+            let fit = subset.and_then(|subset| subset.find(&level.spline, warp));
             warp = fit.map_or(warp, |fit| fit.warp).scaled(2.0);
         }
         let Follower {
@@ -142,10 +142,10 @@ impl<'a> Pyramid<'a> {
             ..
         } = *self.follower;
         let subset = |order| Subset::new(reference, centre, half, order, noise);
-        let affine = subset(Order::Affine)?.find(self.spline, warp, noise)?;
+        let affine = subset(Order::Affine)?.find(self.spline, warp)?;
         let fit = match order {
             Order::Affine => affine,
-            order => subset(order)?.find(self.spline, affine.warp, noise)?,
+            order => subset(order)?.find(self.spline, affine.warp)?,
         };
         (fit.similarity >= LEAST_SIMILARITY).then_some(fit)
     }

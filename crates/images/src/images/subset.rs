@@ -23,7 +23,7 @@ use super::noise::{Classes, Noise};
 use super::spline::Spline;
 use super::warp::{DEGREES, Order, Warp, functions};
 
-/// A subset of the first image.
+/// A subset of the first image, with the noise of both images.
 #[derive(Clone, Debug)]
 pub struct Subset {
     centre: [f64; 2],
@@ -150,11 +150,11 @@ impl Subset {
     /// The root mean square of both components' standard deviations that an image of the same noise would give without deformation, in pixels.
     pub fn expected_deviation(&self) -> f64 {
         let mean = self.matrices.value / self.pixels.len() as f64;
-        let covariance = self.covariance(Matrix2::identity(), 1.0, mean, &self.noise);
+        let covariance = self.covariance(Matrix2::identity(), 1.0, mean);
         (0.5 * covariance.trace()).sqrt()
     }
 
-    fn covariance(&self, f: Matrix2<f64>, gain: f64, other: f64, noise: &Noise) -> Matrix2<f64> {
+    fn covariance(&self, f: Matrix2<f64>, gain: f64, other: f64) -> Matrix2<f64> {
         let Matrices {
             step,
             spread,
@@ -164,21 +164,21 @@ impl Subset {
         let solved = step.solve(spread);
         let both = step.solve(&solved.transpose());
         let block = Matrix2::new(both[(0, 0)], both[(0, 1)], both[(1, 0)], both[(1, 1)]);
-        let variance = noise.variance(value / self.pixels.len() as f64);
-        let other = gain * gain * noise.variance(other) * (1.0 / f.determinant()).max(1.0);
+        let variance = self.noise.variance(value / self.pixels.len() as f64);
+        let other = gain * gain * self.noise.variance(other) * (1.0 / f.determinant()).max(1.0);
         f * (0.5 * (block + block.transpose())) * f.transpose() * (variance + other)
     }
 
     /// Finds the subset in another image from a first guess; `None` where it does not converge within the image.
-    pub fn find(mut self, image: &Spline, guess: Warp, noise: &Noise) -> Option<Match> {
+    pub fn find(mut self, image: &Spline, guess: Warp) -> Option<Match> {
         const MOST: usize = 40;
         /// Pixels.
         const SMALL: f64 = 1e-3;
         let mut warp = guess;
         for _ in 0..MOST {
-            let (sums, length) = self.improve(image, &mut warp, noise)?;
+            let (sums, length) = self.improve(image, &mut warp)?;
             if length < SMALL {
-                return Some(self.concluded(&sums, (warp, warp), noise));
+                return Some(self.concluded(&sums, (warp, warp)));
             }
         }
         None
@@ -186,17 +186,17 @@ impl Subset {
 
     /// One step of [`Self::find`]: the displacement by the images' misfit linearised about a guess, for patches whose noise would lead a search
     /// astray.
-    pub fn find_linear(mut self, image: &Spline, guess: Warp, noise: &Noise) -> Option<Match> {
+    pub fn find_linear(mut self, image: &Spline, guess: Warp) -> Option<Match> {
         let mut warp = guess;
-        let (sums, _) = self.improve(image, &mut warp, noise)?;
-        Some(self.concluded(&sums, (guess, warp), noise))
+        let (sums, _) = self.improve(image, &mut warp)?;
+        Some(self.concluded(&sums, (guess, warp)))
     }
 
     /// Takes one step; gives the sums before it and its length in pixels. `None` where it leads too far.
-    fn improve(&mut self, image: &Spline, warp: &mut Warp, noise: &Noise) -> Option<(Sums, f64)> {
+    fn improve(&mut self, image: &Spline, warp: &mut Warp) -> Option<(Sums, f64)> {
         let sums = self.sums_inside(image, warp)?;
         let f = warp.deformation_gradient();
-        let q = self.step(&sums, noise);
+        let q = self.step(&sums);
         let mut largest = 0.0_f64;
         for k in 0..self.count {
             let scale = self.half.powi(-DEGREES[k]);
@@ -260,7 +260,8 @@ impl Subset {
     }
 
     /// Variances of both images without noise, and their covariance.
-    fn moments(&self, sums: &Sums, noise: &Noise) -> [f64; 3] {
+    fn moments(&self, sums: &Sums) -> [f64; 3] {
+        let noise = &self.noise;
         let Matrices { value, square, .. } = &self.matrices;
         let (mean, other) = (value / sums.count, sums.value / sums.count);
         let first = square / sums.count - mean * mean - noise.variance(mean);
@@ -270,8 +271,8 @@ impl Subset {
     }
 
     /// b, with the variance of the other image's noise taken out.
-    fn gain(&self, sums: &Sums, noise: &Noise) -> f64 {
-        let [first, second, product] = self.moments(sums, noise);
+    fn gain(&self, sums: &Sums) -> f64 {
+        let [first, second, product] = self.moments(sums);
         let gain = product / second;
         if second > 0.0 && gain > 0.0 && gain.is_finite() {
             gain
@@ -281,7 +282,7 @@ impl Subset {
     }
 
     /// q.
-    fn step(&self, sums: &Sums, noise: &Noise) -> DVector<f64> {
+    fn step(&self, sums: &Sums) -> DVector<f64> {
         let Matrices {
             step,
             sum,
@@ -297,14 +298,14 @@ impl Subset {
             DVector::from_iterator(sum.len(), sums.products[..sum.len()].iter().copied());
         // Σ J⊥ I₁
         let residual = products - sum * (sums.value / sums.count) - weighted * (other / variation);
-        step.solve(&(residual * -self.gain(sums, noise)))
+        step.solve(&(residual * -self.gain(sums)))
     }
 
     /// The match at a field, with the covariance and similarity of sums about another one.
-    fn concluded(&self, sums: &Sums, (about, warp): (Warp, Warp), noise: &Noise) -> Match {
+    fn concluded(&self, sums: &Sums, (about, warp): (Warp, Warp)) -> Match {
         let Matrices { value, square, .. } = &self.matrices;
-        let [first, second, product] = self.moments(sums, noise);
-        let gain = self.gain(sums, noise);
+        let [first, second, product] = self.moments(sums);
+        let gain = self.gain(sums);
         let (mean, other) = (value / sums.count, sums.value / sums.count);
         let similarity = if first > 0.0 && second > 0.0 && product > 0.0 {
             product * product / (first * second)
@@ -317,7 +318,7 @@ impl Subset {
         ];
         Match {
             warp,
-            covariance: self.covariance(about.deformation_gradient(), gain, other, noise),
+            covariance: self.covariance(about.deformation_gradient(), gain, other),
             similarity,
             gain,
             offset: mean - gain * other,
