@@ -25,6 +25,8 @@ pub struct Reference {
     pub smooth: [GreyImage; 2],
     /// ⟨k̂, k⟩ of one component, in 1/pixel².
     pub overlap: f64,
+    /// The noise of its pixels.
+    pub noise: Noise,
     /// Which pixels show the pattern: those of the specimen without dead and saturated ones.
     pub usable: Vec<bool>,
 }
@@ -65,7 +67,7 @@ fn product(a: &[GreyImage; 2], b: &[GreyImage; 2], usable: &[bool]) -> f64 {
 
 impl Reference {
     /// Of an image, its usable pixels, and the noise.
-    pub fn new(image: GreyImage, usable: Vec<bool>, noise: &Noise) -> Self {
+    pub fn new(image: GreyImage, usable: Vec<bool>, noise: Noise) -> Self {
         let gradient = Spline::new(&image).gradients();
         let count = usable.iter().filter(|flag| **flag).count().max(1) as f64;
         let counted = || usable.iter().zip(image.values()).filter(|(flag, _)| **flag);
@@ -89,6 +91,7 @@ impl Reference {
             gradient,
             smooth,
             overlap,
+            noise,
             usable,
         }
     }

@@ -3,7 +3,6 @@
 use rayon::prelude::*;
 
 use super::gradient::Reference;
-use super::noise::Noise;
 use super::spline::Spline;
 use super::subset::{Match, Subset};
 use super::warp::{Order, Warp};
@@ -71,19 +70,12 @@ pub struct Follower<'a> {
     pub neighbours: &'a [Vec<usize>],
     pub half: usize,
     pub order: Order,
-    pub noise: &'a Noise,
 }
 
 impl Follower<'_> {
     /// The match of a point, searched from a guess.
     pub fn find(&self, point: usize, image: &Spline, guess: Warp) -> Option<Match> {
-        let subset = Subset::new(
-            self.reference,
-            self.centres[point]?,
-            self.half,
-            self.order,
-            self.noise,
-        )?;
+        let subset = Subset::new(self.reference, self.centres[point]?, self.half, self.order)?;
         let fit = subset.find(image, guess)?;
         (fit.similarity >= LEAST_SIMILARITY).then_some(fit)
     }

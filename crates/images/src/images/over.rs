@@ -41,7 +41,7 @@ impl Tracker {
         }
         let centres: Vec<Option<[usize; 2]>> = (0..found.len()).map(centre).collect();
         let usable = vec![true; size[0] * size[1]];
-        let reference = Reference::new(last.clone(), usable, &self.noise);
+        let reference = Reference::new(last.clone(), usable, self.reference.noise);
         let follower = Follower {
             reference: &reference,
             centres: &centres,

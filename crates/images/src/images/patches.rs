@@ -32,7 +32,7 @@ pub struct Patches<'a> {
 impl Tracker {
     /// Patches that are wide enough for the noise of the images.
     pub fn patches(&self) -> Patches<'_> {
-        let layout = || PatchLayout::new(&self.reference, &self.grid, self.spacing, &self.noise);
+        let layout = || PatchLayout::new(&self.reference, &self.grid, self.spacing);
         Patches {
             tracker: self,
             layout: self.patch_layout.get_or_init(layout),
@@ -59,13 +59,8 @@ impl Patches<'_> {
 
     /// The patch about a point of the grid.
     fn patch(&self, number: usize) -> Option<Subset> {
-        let Tracker {
-            reference,
-            grid,
-            noise,
-            ..
-        } = self.tracker;
-        Subset::patch(reference, grid.points[number], self.layout.width, noise)
+        let point = self.tracker.grid.points[number];
+        Subset::patch(&self.tracker.reference, point, self.layout.width)
     }
 
     fn is_precise(&self, patch: &Subset) -> bool {

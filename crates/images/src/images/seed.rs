@@ -41,7 +41,6 @@ fn halved_flags(flags: &[bool], [width, height]: [usize; 2]) -> Vec<bool> {
 /// A reference and the image that it is compared with, on one level of the pyramid.
 struct Level {
     reference: Reference,
-    noise: Noise,
     spline: Spline,
     image: GreyImage,
 }
@@ -73,8 +72,7 @@ impl<'a> Pyramid<'a> {
             let other = halved(other);
             coarse.push(Level {
                 spline: Spline::new(&other),
-                reference: Reference::new(first, usable, &noise),
-                noise,
+                reference: Reference::new(first, usable, noise),
                 image: other,
             });
         }
@@ -130,7 +128,7 @@ impl<'a> Pyramid<'a> {
         let mut warp = guess;
         for (index, level) in self.coarse.iter().enumerate().rev() {
             let at = centre.map(|c| c >> (index + 1));
-            let subset = Subset::new(&level.reference, at, HALF, Order::Affine, &level.noise);
+            let subset = Subset::new(&level.reference, at, HALF, Order::Affine);
             let fit = subset.and_then(|subset| subset.find(&level.spline, warp));
             warp = fit.map_or(warp, |fit| fit.warp).scaled(2.0);
         }
@@ -138,10 +136,9 @@ impl<'a> Pyramid<'a> {
             reference,
             half,
             order,
-            noise,
             ..
         } = *self.follower;
-        let subset = |order| Subset::new(reference, centre, half, order, noise);
+        let subset = |order| Subset::new(reference, centre, half, order);
         let affine = subset(Order::Affine)?.find(self.spline, warp)?;
         let fit = match order {
             Order::Affine => affine,

@@ -5,24 +5,19 @@ use rayon::prelude::*;
 use super::filter::{gaussian, symmetric};
 use super::gradient::Reference;
 use super::grid::Grid;
-use super::noise::Noise;
 use super::subset::Subset;
 use super::warp::Order;
 
 /// Half the width of a subset that is five speckles wide, by the width at half height of the pattern's autocorrelation, and wide enough for
 /// standard deviations of the displacement below a twentieth of a pixel at a quarter of the points, but at most an eighth of the image.
-pub fn half_width(reference: &Reference, grid: &Grid, order: Order, noise: &Noise) -> usize {
+pub fn half_width(reference: &Reference, grid: &Grid, order: Order) -> usize {
     const SPECKLES: f64 = 5.0;
     const DEVIATION: f64 = 0.05;
     const LEAST: usize = 5;
     let size = reference.image.size();
     let most = (size[0].min(size[1]) / 8).max(LEAST);
-    let start = (0.5 * SPECKLES * speckle(reference, noise)).round() as usize;
-    let deviation = |half| {
-        typical(grid, &|point| {
-            Subset::new(reference, point, half, order, noise)
-        })
-    };
+    let start = (0.5 * SPECKLES * speckle(reference)).round() as usize;
+    let deviation = |half| typical(grid, &|point| Subset::new(reference, point, half, order));
     let mut half = start.clamp(LEAST, most);
     while half < most && deviation(half) > DEVIATION {
         half = (half + 1 + half / 8).min(most);
@@ -43,9 +38,9 @@ pub struct PatchLayout {
 
 impl PatchLayout {
     /// Patches that are wide enough for the noise, on a grid of a spacing.
-    pub fn new(reference: &Reference, grid: &Grid, spacing: usize, noise: &Noise) -> Self {
-        let speckle = speckle(reference, noise);
-        let width = spacing * patch_steps(reference, grid, spacing, noise, speckle);
+    pub fn new(reference: &Reference, grid: &Grid, spacing: usize) -> Self {
+        let speckle = speckle(reference);
+        let width = spacing * patch_steps(reference, grid, spacing, speckle);
         let first = [0, 1].map(|axis| grid.points.iter().map(|point| point[axis]).min());
         let is_on_lattice = |point: &[usize; 2]| {
             (0..2).all(|axis| (point[axis] - first[axis].unwrap_or(0)).is_multiple_of(width))
@@ -61,15 +56,9 @@ impl PatchLayout {
     }
 }
 
-/// How many steps of the grid wide patches are that share no pixel: three speckles, and wide enough that the noise moves a quarter of them by
+/// The width of patches that share no pixel in steps of the grid: three speckles, and wide enough that the noise moves a quarter of them by
 /// less than an eighth of a speckle, for which the images are linear; at most an eighth of the image.
-fn patch_steps(
-    reference: &Reference,
-    grid: &Grid,
-    spacing: usize,
-    noise: &Noise,
-    speckle: f64,
-) -> usize {
+fn patch_steps(reference: &Reference, grid: &Grid, spacing: usize, speckle: f64) -> usize {
     const SPECKLES: f64 = 3.0;
     const LINEAR: f64 = 0.125;
     let size = reference.image.size();
@@ -77,7 +66,7 @@ fn patch_steps(
     let mut steps = ((SPECKLES * speckle / spacing as f64).round() as usize).clamp(1, most);
     let deviation = |steps| {
         typical(grid, &|point| {
-            Subset::patch(reference, point, steps * spacing, noise)
+            Subset::patch(reference, point, steps * spacing)
         })
     };
     while steps < most && deviation(steps) > LINEAR * speckle {
@@ -104,7 +93,7 @@ fn typical(grid: &Grid, subset: &(dyn Fn([usize; 2]) -> Option<Subset> + Sync)) 
 
 /// The width at half height of the autocorrelation of the pattern, the mean of both directions, in pixels; light and dark areas that
 /// are much larger than a speckle do not count.
-fn speckle(reference: &Reference, noise: &Noise) -> f64 {
+fn speckle(reference: &Reference) -> f64 {
     const MOST: usize = 40;
     /// Standard deviation in pixels of what counts as an area.
     const AREA: f64 = 16.0;
@@ -123,7 +112,7 @@ fn speckle(reference: &Reference, noise: &Noise) -> f64 {
         let mut covariances: Vec<f64> = (0..lags)
             .map(|lag| covariance(&values, &reference.usable, lag * step))
             .collect();
-        covariances[0] -= noise.variance(mean);
+        covariances[0] -= reference.noise.variance(mean);
         width_at_half_height(&covariances)
     };
     0.5 * (width_along(1) + width_along(width))

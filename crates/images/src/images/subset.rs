@@ -75,20 +75,14 @@ impl Subset {
         centre: [usize; 2],
         half: usize,
         order: Order,
-        noise: &Noise,
     ) -> Option<Self> {
-        Self::of_square(reference, centre, 2 * half + 1, order.functions(), noise)
+        Self::of_square(reference, centre, 2 * half + 1, order.functions())
     }
 
     /// A square of `width` pixels of which the displacement alone is unknown, its gradient known. Squares whose centres are `width` apart
     /// share no pixel.
-    pub fn patch(
-        reference: &Reference,
-        centre: [usize; 2],
-        width: usize,
-        noise: &Noise,
-    ) -> Option<Self> {
-        Self::of_square(reference, centre, width, 1, noise)
+    pub fn patch(reference: &Reference, centre: [usize; 2], width: usize) -> Option<Self> {
+        Self::of_square(reference, centre, width, 1)
     }
 
     fn of_square(
@@ -96,7 +90,6 @@ impl Subset {
         centre: [usize; 2],
         width: usize,
         count: usize,
-        noise: &Noise,
     ) -> Option<Self> {
         let size = reference.image.size();
         let [columns, rows] = [0, 1].map(|axis| {
@@ -123,12 +116,12 @@ impl Subset {
         }
         let half = (width / 2).max(1) as f64;
         Some(Self {
-            matrices: Matrices::new(&pixels, half, count, reference.overlap, noise)?,
+            matrices: Matrices::new(&pixels, half, count, reference.overlap, &reference.noise)?,
             centre: centre.map(|c| c as f64),
             count,
             half,
             overlap: reference.overlap,
-            noise: *noise,
+            noise: reference.noise,
             full_count: pixels.len(),
             pixels,
         })

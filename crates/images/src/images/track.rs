@@ -51,7 +51,6 @@ pub struct Tracker {
     pub(super) centres: Vec<Option<[usize; 2]>>,
     pub(super) half: usize,
     pub(super) order: Order,
-    pub(super) noise: Noise,
     pub(super) white: f32,
     pub(super) dead: Vec<usize>,
     pub(super) spacing: usize,
@@ -94,13 +93,13 @@ impl Tracker {
         let grid = Grid::new(first.size(), settings.spacing.max(1), |x, y| {
             region.has(x, y)
         });
-        let reference = Reference::new(image, usable, &noise);
+        let reference = Reference::new(image, usable, noise);
         let half = match settings.subset {
             Some(width) => width / 2,
-            None => half_width(&reference, &grid, settings.order, &noise),
+            None => half_width(&reference, &grid, settings.order),
         };
         let has_pattern = |point: &[usize; 2]| {
-            let subset = Subset::new(&reference, *point, half, settings.order, &noise);
+            let subset = Subset::new(&reference, *point, half, settings.order);
             subset.is_some_and(|subset| subset.expected_deviation() < KNOWN)
         };
         let centres: Vec<Option<[usize; 2]>> = grid
@@ -120,7 +119,6 @@ impl Tracker {
             centres,
             half,
             order: settings.order,
-            noise,
             dead,
             spacing: settings.spacing.max(1),
             before: None,
@@ -146,7 +144,7 @@ impl Tracker {
 
     /// The noise of the pixels; once an image has been followed, that of its residuals.
     pub fn noise(&self) -> &Noise {
-        &self.noise
+        &self.reference.noise
     }
 
     /// The positions of all points in pixels.
@@ -171,7 +169,6 @@ impl Tracker {
             neighbours: &self.grid.neighbours,
             half: self.half,
             order: self.order,
-            noise: &self.noise,
         }
     }
 
@@ -293,9 +290,8 @@ impl Tracker {
             let mut classes = empty.clone();
             for point in points {
                 let centre = self.centres[*point];
-                let subset = centre.and_then(|centre| {
-                    Subset::new(&self.reference, centre, self.half, self.order, &self.noise)
-                });
+                let subset = centre
+                    .and_then(|centre| Subset::new(&self.reference, centre, self.half, self.order));
                 if let (Some(subset), Some(one)) = (subset, &matches[*point]) {
                     subset.classify(spline, one, &mut classes);
                 }
@@ -305,11 +301,10 @@ impl Tracker {
         let parts: Vec<Classes> = parts.collect();
         let classes = parts.iter().fold(empty, Classes::join);
         if let Some(noise) = classes.noise() {
-            self.noise = noise;
             self.patch_layout = OnceLock::new();
             let reference = &self.reference;
             self.reference =
-                Reference::new(reference.image.clone(), reference.usable.clone(), &noise);
+                Reference::new(reference.image.clone(), reference.usable.clone(), noise);
             let follower = self.follower();
             let guesses = matches
                 .iter()
