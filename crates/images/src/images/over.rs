@@ -55,7 +55,7 @@ impl Tracker {
         let mut steps: Vec<Option<Match>> = (0..found.len()).map(known_step).collect();
         let mut attempts = vec![0; steps.len()];
         if steps.iter().all(Option::is_none) {
-            self.seed(&follower, (image, spline), &mut steps, &mut attempts);
+            self.seed(&follower, image, spline, &mut steps, &mut attempts);
         } else {
             follower.spread(spline, &mut steps, &mut attempts);
         }

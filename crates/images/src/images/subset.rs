@@ -171,7 +171,7 @@ impl Subset {
         for _ in 0..MOST {
             let (sums, length) = self.improve(image, &mut warp)?;
             if length < SMALL {
-                return Some(self.concluded(&sums, (warp, warp)));
+                return Some(self.concluded(&sums, &warp, warp));
             }
         }
         None
@@ -182,7 +182,7 @@ impl Subset {
     pub fn find_linear(mut self, image: &Spline, guess: Warp) -> Option<Match> {
         let mut warp = guess;
         let (sums, _) = self.improve(image, &mut warp)?;
-        Some(self.concluded(&sums, (guess, warp)))
+        Some(self.concluded(&sums, &guess, warp))
     }
 
     /// Takes one step; gives the sums before it and its length in pixels. `None` where it leads too far.
@@ -294,8 +294,8 @@ impl Subset {
         step.solve(&(residual * -self.gain(sums)))
     }
 
-    /// The match at a field, with the covariance and similarity of sums about another one.
-    fn concluded(&self, sums: &Sums, (about, warp): (Warp, Warp)) -> Match {
+    /// The match at a field `warp`, with the covariance and similarity of the sums about the field `about`.
+    fn concluded(&self, sums: &Sums, about: &Warp, warp: Warp) -> Match {
         let Matrices { value, square, .. } = &self.matrices;
         let [first, second, product] = self.moments(sums);
         let gain = self.gain(sums);

@@ -230,7 +230,7 @@ impl Tracker {
             }
         }
         if self.before.is_none() || matches.iter().all(Option::is_none) {
-            self.seed(&follower, (image, spline), &mut matches, &mut attempts);
+            self.seed(&follower, image, spline, &mut matches, &mut attempts);
         }
         matches
     }
@@ -239,7 +239,8 @@ impl Tracker {
     pub(super) fn seed(
         &self,
         follower: &Follower,
-        (image, spline): (&GreyImage, &Spline),
+        image: &GreyImage,
+        spline: &Spline,
         matches: &mut [Option<Match>],
         attempts: &mut [usize],
     ) {

@@ -164,7 +164,7 @@ impl Conditions {
             )),
             (Some(path), _) => {
                 let (forces, warning) =
-                    machine::forces(path, &self.force_columns, (series, self.clock))?;
+                    machine::forces(path, &self.force_columns, series, self.clock)?;
                 self.forces.extend(forces);
                 Ok(warning)
             }

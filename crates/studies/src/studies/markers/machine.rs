@@ -58,7 +58,8 @@ enum Match {
 pub fn forces(
     path: &Path,
     wanted: &[ForceColumn],
-    (series, clock): (&MarkerSeries, FrameClock),
+    series: &MarkerSeries,
+    clock: FrameClock,
 ) -> Result<(FrameForces, Option<Diagnostic>), Error> {
     let table = Table::read(path, Table::HINT)?;
     if wanted.is_empty() {
@@ -77,7 +78,7 @@ pub fn forces(
         let forces = newtons(&table, one)?;
         let stated = one.standard_deviation;
         for frame in &series.frames {
-            let Some(force) = rows.at(&table, (frame, clock.time(frame)), &forces)? else {
+            let Some(force) = rows.at(&table, frame, clock.time(frame), &forces)? else {
                 without.insert(frame.number);
                 continue;
             };
@@ -174,7 +175,8 @@ impl Match {
     fn at(
         &self,
         table: &Table,
-        (frame, time): (&Frame, Option<f64>),
+        frame: &Frame,
+        time: Option<f64>,
         forces: &[f64],
     ) -> Result<Option<f64>, Error> {
         let times = match self {
@@ -253,7 +255,7 @@ mod tests {
             column: column.into(),
             standard_deviation: None,
         };
-        forces(&path, &[column], (&series(frames), clock))
+        forces(&path, &[column], &series(frames), clock)
     }
 
     const BY_TIME: &str = "time [ms];Weg [mm];Load [kN]\n0;0;0\n1000;1;0,002\n3000;2;0,006\n";

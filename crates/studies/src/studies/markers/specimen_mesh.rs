@@ -102,7 +102,7 @@ pub(super) fn mesh(request: &Request, field: &MarkerFiles) -> Result<SpecimenMes
 fn in_outline(request: &Request, path: &Path, field: &MarkerFiles) -> Result<SpecimenMesh, Error> {
     let lines = read_lines(path, request.reading.unit)?;
     let hint = "give the corners of each closed line in order, in columns x [mm], y [mm], line";
-    inside(request, lines, ("outline of", path, hint), field)
+    inside(request, field, lines, "outline of", path, hint)
 }
 
 /// A mesh inside the edge of a mask.
@@ -112,31 +112,24 @@ fn in_mask(
     field: &MarkerFiles,
 ) -> Result<SpecimenMesh, Error> {
     let image = mask.read()?;
-    let lines = Region::of_mask(&image, image.size())?.edge();
+    let mut lines = Region::of_mask(&image, image.size())?.edge();
     let pixel = request.reading.unit.unwrap_or(f64::NAN);
     let up = (image.size()[1] - 1) as f64;
-    let in_mm = |line: Vec<[f64; 2]>| {
-        let positions = line.into_iter();
-        positions
-            .map(|[x, y]| [pixel * x, pixel * (up - y)])
-            .collect()
-    };
-    let lines = lines.into_iter().map(in_mm).collect();
+    for position in lines.iter_mut().flatten() {
+        *position = [pixel * position[0], pixel * (up - position[1])];
+    }
     let hint = "draw one specimen white on black, with an edge that does not touch itself";
-    inside(
-        request,
-        lines,
-        ("edge of the mask", &mask.path, hint),
-        field,
-    )
+    inside(request, field, lines, "edge of the mask", &mask.path, hint)
 }
 
 /// A mesh inside the closed lines in mm of a file; `what` and `path` name their origin, `hint` is the remedy where they enclose no specimen.
 fn inside(
     request: &Request,
-    lines: Vec<Vec<[f64; 2]>>,
-    (what, path, hint): (&str, &Path, &str),
     field: &MarkerFiles,
+    lines: Vec<Vec<[f64; 2]>>,
+    what: &str,
+    path: &Path,
+    hint: &str,
 ) -> Result<SpecimenMesh, Error> {
     let outline = Outline::of_lines(lines)
         .map_err(|reason| Error::input(format!("{}: {reason}", path.display()), hint))?;
