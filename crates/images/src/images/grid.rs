@@ -7,10 +7,10 @@ use super::spline::Spline;
 use super::subset::{Match, Subset};
 use super::warp::{Order, Warp};
 
-/// The least part of the pattern's variance that must be found again.
+/// The least similarity of a match.
 pub const LEAST_SIMILARITY: f64 = 0.5;
 
-/// How often a point is tried from further neighbours.
+/// How often a point is searched from the fields of its neighbours.
 const MOST_ATTEMPTS: usize = 4;
 
 /// Points of a regular grid.
@@ -23,7 +23,7 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// The points of a grid of a spacing that `has` holds for, in the middle of an image.
+    /// A grid of a spacing in the middle of an image; only its points for which `has` is true.
     pub fn new(size: [usize; 2], spacing: usize, has: impl Fn(usize, usize) -> bool) -> Self {
         let counts = size.map(|length| length.div_ceil(spacing));
         let starts = [0, 1].map(|axis| (size[axis] - 1 - (counts[axis] - 1) * spacing) / 2);

@@ -88,7 +88,7 @@ impl Region {
         &self.inside
     }
 
-    /// The pixels whose interpolation reaches none outside of the specimen, within the image: cubic B-splines reach two pixels.
+    /// The pixels around which interpolation uses no pixel outside of the specimen: cubic B-splines use two pixels to each side.
     pub fn inner(&self) -> Vec<bool> {
         const REACH: usize = 2;
         let [width, height] = self.size;

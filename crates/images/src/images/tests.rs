@@ -36,12 +36,15 @@ impl Homogeneous {
     }
 }
 
-/// Root mean square of the errors in pixels, the share of components within 1.96 standard deviations, and the share of points inside of the
-/// frame that are found.
+/// How well a known displacement is found.
 struct Figures {
+    /// Root mean square of the errors in pixels.
     error: f64,
+    /// The share of components within 1.96 standard deviations.
     covered: f64,
+    /// The share of points inside of the frame that are found.
     followed: f64,
+    /// The largest error in pixels.
     worst: f64,
 }
 

@@ -63,11 +63,11 @@ pub struct Tracker {
 /// One of so many points is searched first, from its field in the image before.
 const SAMPLED: usize = 17;
 
-/// The most seeds of separate parts of a specimen.
+/// The largest number of seeds, one for each separate part of a specimen.
 const MOST_SEEDS: usize = 12;
 
 impl Tracker {
-    /// From the first image, another one of the series, in which dead pixels are the same, and the specimen's region.
+    /// From the first image, another one of the series to tell dead pixels from the pattern, and the specimen's region.
     ///
     /// # Errors
     /// [`Error::Input`] where the sizes differ, or where the region has no pattern.
@@ -127,7 +127,7 @@ impl Tracker {
         })
     }
 
-    /// What a user must know.
+    /// Warnings about the first image.
     pub fn warnings(&self) -> &[Diagnostic] {
         &self.warnings
     }

@@ -6,7 +6,7 @@ use rand_chacha::ChaCha8Rng;
 /// A pattern on the specimen: lightness from 0 to about 1 at each material point in pixels.
 pub type Pattern = Box<dyn Fn([f64; 2]) -> f64 + Sync>;
 
-/// Blobs of random places and sizes, about 4 pixels wide at half height.
+/// Blobs of random positions and sizes, about 4 pixels wide at half height.
 pub fn speckle(seed: u64) -> Pattern {
     const CELL: f64 = 5.0;
     const COUNT: usize = 128;

@@ -163,8 +163,8 @@ mod tests {
         }
     }
 
-    /// How many of 200 frames are not explained whose noise is that of a picture at rest, `rest` times as large as their
-    /// own, and that have `misfit` times a field in common with a first frame of such an answer.
+    /// How many of 200 frames are not explained, each compared with a first frame that has the answer `first`. Both have noise of their own of
+    /// size 1, that of the picture at rest of size `rest`, and a misfit of size `misfit` in common.
     fn count_unexplained(rest: f64, misfit: f64, first: Answer) -> usize {
         let mut random = ChaCha8Rng::seed_from_u64(7);
         let frames = [frame(1), frame(2)];

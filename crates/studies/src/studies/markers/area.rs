@@ -24,8 +24,8 @@ impl Area {
         }
     }
 
-    /// Whether it holds a place, but for rounding.
-    fn holds(self, [x, y]: [f64; 2]) -> bool {
+    /// Whether it contains a position, up to rounding.
+    fn contains(self, [x, y]: [f64; 2]) -> bool {
         const NEAR: f64 = 1e-9;
         match self {
             Self::Rectangle([[a, b], [c, d]]) => {
@@ -40,13 +40,13 @@ impl Area {
 /// Names the nodes within areas.
 ///
 /// # Errors
-/// [`Error::Input`] with every area that holds too few nodes to be a body, or whose name the mesh has already.
+/// [`Error::Input`] with every area that contains too few nodes for a pad, or whose name the mesh has already.
 pub fn name(mesh: &mut Mesh, areas: &[(String, Area)]) -> Result<(), Error> {
     const LEAST: usize = 2;
     let mut faults = Vec::new();
     for (name, area) in areas {
         let nodes: BTreeSet<usize> = (0..mesh.nodes.len())
-            .filter(|node| area.holds(mesh.nodes[*node]))
+            .filter(|node| area.contains(mesh.nodes[*node]))
             .collect();
         if mesh.groups().contains_key(name) {
             let fault = Diagnostic::error("", format!("the mesh already has a group `{name}`"));

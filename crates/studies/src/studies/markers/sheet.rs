@@ -1,4 +1,4 @@
-//! The sheet of a study of markers, as estimates take it and as they have found it.
+//! The sheet of a study of markers: its cards, and its laws with the parameters that an estimate has found.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! A file with a whole specimen: its fields, thickness and mesh in a section, and the other known conditions.
+//! A file that describes a specimen: its fields, thickness and mesh in a section, beside the known conditions.
 
 use std::path::{Path, PathBuf};
 

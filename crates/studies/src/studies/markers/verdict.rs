@@ -133,7 +133,7 @@ fn residual(rms: f64) -> Option<String> {
     rms.is_finite().then(|| decimals(rms, 5))
 }
 
-/// An alternative in words; an outline made from markers is moved by their distance from the edge.
+/// An alternative in words, with the edge gap to state where it moves an outline that was made from markers.
 fn trial_words(study: &MarkerStudy, trial: &Trial) -> String {
     let words = trial.alternative.words();
     match other_gap(study, &trial.alternative) {
