@@ -24,19 +24,19 @@ mod filter;
 mod gradient;
 mod grey;
 mod grid;
+mod image_before;
 mod markers;
 mod matrices;
 mod noise;
-mod over;
 mod patches;
 mod read;
 mod region;
 mod seed;
 mod speckle;
 mod spline;
-mod state;
 mod subset;
 mod track;
+mod tracked;
 mod warp;
 
 pub use gradient::Reference;
@@ -47,8 +47,8 @@ pub use patches::Patches;
 pub use read::{ImageFile, in_order, is_image_path, list, of_bytes};
 pub use region::Region;
 pub use spline::Spline;
-pub use state::Tracked;
 pub use track::{Settings, Tracker};
+pub use tracked::Tracked;
 pub use warp::{Order, Warp};
 
 #[cfg(test)]

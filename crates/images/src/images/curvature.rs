@@ -9,7 +9,7 @@
 use nalgebra::Matrix2;
 
 use super::grid::Grid;
-use super::state::Tracked;
+use super::tracked::Tracked;
 
 /// Adds b bᵀ, times the part of |b|² that is not noise, to the covariance of each point that has a neighbour along both axes.
 pub fn add_curvature(grid: &Grid, spacing: usize, half: usize, tracked: &mut [Option<Tracked>]) {

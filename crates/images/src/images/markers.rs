@@ -1,6 +1,6 @@
 //! Tracked points as markers in mm.
 
-use super::state::Tracked;
+use super::tracked::Tracked;
 use crate::markers::{Frame, Marker, MarkerSeries};
 
 /// The frames of tracked points as markers: in mm by the length of a pixel, x to the right, y up, with the origin at the centre of the lower left

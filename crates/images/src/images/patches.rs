@@ -13,9 +13,9 @@ use rayon::prelude::*;
 use super::grey::GreyImage;
 use super::speckle::PatchLayout;
 use super::spline::Spline;
-use super::state::Tracked;
 use super::subset::Subset;
 use super::track::Tracker;
+use super::tracked::Tracked;
 use super::warp::Warp;
 
 /// Standard deviation of a displacement in speckles below which a patch is searched for; above it noise leads a search astray, and a single

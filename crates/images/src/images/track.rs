@@ -14,8 +14,8 @@ use super::region::Region;
 use super::seed::Pyramid;
 use super::speckle::{PatchLayout, half_width};
 use super::spline::Spline;
-use super::state::Tracked;
 use super::subset::{Match, Subset};
+use super::tracked::Tracked;
 use super::warp::Order;
 use crate::error::{Diagnostic, Error};
 
@@ -185,7 +185,7 @@ impl Tracker {
             self.learn_noise(&spline, &mut matches);
         }
         self.follower().drop_outliers(&mut matches);
-        self.over_image_before(&image, &spline, &mut matches);
+        self.follow_from_image_before(&image, &spline, &mut matches);
         if matches.iter().all(Option::is_none) {
             let message = "no point of the first image is found again";
             let hint = "give the images between them, or check that the series shows one specimen; the pattern must stay the same";

@@ -1,4 +1,4 @@
-//! Points that are lost in the first image, followed from the image before.
+//! Points that are not found from the first image, followed from the image before.
 
 use rayon::prelude::*;
 
@@ -19,7 +19,7 @@ fn pixel_at([x, y]: [f64; 2], size: [usize; 2]) -> Option<[usize; 2]> {
 impl Tracker {
     /// Finds the points that were not found from the first image, by following them from the image before. Where the first image's pattern
     /// is then found after all, the match is with the first image; otherwise the covariances of both steps add up.
-    pub(super) fn over_image_before(
+    pub(super) fn follow_from_image_before(
         &self,
         image: &GreyImage,
         spline: &Spline,
