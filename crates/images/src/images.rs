@@ -25,7 +25,6 @@ mod gradient;
 mod grey;
 mod grid;
 mod image_before;
-mod markers;
 mod matrices;
 mod noise;
 mod patches;
@@ -41,14 +40,13 @@ mod warp;
 
 pub use gradient::Reference;
 pub use grey::GreyImage;
-pub use markers::series;
 pub use noise::Noise;
 pub use patches::Patches;
 pub use read::{ImageFile, in_order, is_image_path, list, of_bytes};
 pub use region::Region;
 pub use spline::Spline;
 pub use track::{Settings, Tracker};
-pub use tracked::Tracked;
+pub use tracked::{Tracked, series};
 pub use warp::{Order, Warp};
 
 #[cfg(test)]
