@@ -2,6 +2,9 @@
 //! scale, the inverse of normal matrices, B-splines, noise that correlates with distance or along curves.
 
 use nalgebra::{Cholesky, DMatrix, Dyn};
+use rand::SeedableRng;
+use rand_chacha::ChaCha8Rng;
+use rand_distr::{Distribution, StandardNormal};
 use serde::{Deserialize, Serialize};
 use statrs::distribution::{Beta, ChiSquared, ContinuousCDF, FisherSnedecor, Normal, StudentsT};
 
@@ -109,6 +112,12 @@ pub fn normal_reach() -> f64 {
 /// The quantile of the standard normal distribution for a probability.
 pub fn normal_quantile(probability: f64) -> f64 {
     Normal::standard().inverse_cdf(probability)
+}
+
+/// Independent standard normal numbers, the same on every machine and in every run for one seed.
+pub fn normal_numbers(seed: u64) -> impl FnMut() -> f64 {
+    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    move || -> f64 { StandardNormal.sample(&mut random) }
 }
 
 /// P(|z| > x) for a standard normal number z.

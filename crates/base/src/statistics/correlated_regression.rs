@@ -267,11 +267,8 @@ fn likelier(a: &&(Correlation, Score), b: &&(Correlation, Score)) -> Ordering {
 
 #[cfg(test)]
 mod tests {
-    use rand::SeedableRng;
-    use rand_chacha::ChaCha8Rng;
-    use rand_distr::{Distribution, StandardNormal};
-
     use super::*;
+    use crate::statistics::normal_numbers;
 
     /// Noise of a correlation on a grid of 20 × 12 places, with a plane taken away from each component.
     fn noise(correlation: Option<Correlation>, seed: u64) -> (Sites, DMatrix<f64>, DVector<f64>) {
@@ -288,8 +285,8 @@ mod tests {
             }
         });
         let root = root.cholesky().unwrap().unpack();
-        let mut random = ChaCha8Rng::seed_from_u64(seed);
-        let mut draw = || DVector::from_fn(count, |_, _| StandardNormal.sample(&mut random));
+        let mut normal = normal_numbers(seed);
+        let mut draw = || DVector::from_fn(count, |_, _| normal());
         let components = [&root * draw(), &root * draw()];
         let values = DVector::from_fn(2 * count, |row, _| components[row % 2][row / 2]);
         let design = DMatrix::from_fn(2 * count, 6, |row, column| {

@@ -76,11 +76,8 @@ fn second_differences(curves: &[Curve], columns: &DMatrix<f64>) -> DMatrix<f64> 
 
 #[cfg(test)]
 mod tests {
-    use rand::SeedableRng;
-    use rand_chacha::ChaCha8Rng;
-    use rand_distr::{Distribution, StandardNormal};
-
     use super::*;
+    use crate::statistics::normal_numbers;
 
     /// Straight lines through two curves: what is left of white noise has probabilities that are spread evenly.
     #[test]
@@ -88,11 +85,11 @@ mod tests {
         let curves = [(0..12).collect(), (12..30).collect()].map(Curve::even);
         let design = DMatrix::from_fn(30, 2, |i, j| (0.1 * i as f64).powi(j as i32));
         let solver = design.clone().svd(true, true);
-        let mut random = ChaCha8Rng::seed_from_u64(2);
+        let mut normal = normal_numbers(2);
         let mut tails = [0; 3];
         const DRAWS: i32 = 2000;
         for _ in 0..DRAWS {
-            let noise = DVector::from_fn(30, |_, _| StandardNormal.sample(&mut random));
+            let noise = DVector::from_fn(30, |_, _| normal());
             let residual = &noise - &design * solver.solve(&noise, 1e-12).unwrap();
             let result = DurbinWatson::new(&design, &residual, &curves).unwrap();
             for (count, level) in tails.iter_mut().zip([0.05, 0.5, 0.95]) {

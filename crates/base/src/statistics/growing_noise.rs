@@ -61,21 +61,17 @@ fn likelihood(curves: &[Vec<usize>], residual: &DVector<f64>, squares: &DVector<
 
 #[cfg(test)]
 mod tests {
-    use rand::SeedableRng;
-    use rand_chacha::ChaCha8Rng;
-    use rand_distr::{Distribution, StandardNormal};
-
     use super::*;
+    use crate::statistics::normal_numbers;
 
     /// Noise on a wave six times as large, its neighbours correlated by so much, of a size that rises by so many times itself.
     fn sizes_of(correlation: f64, rise: f64, seed: u64) -> Option<DVector<f64>> {
         const ROWS: usize = 80;
-        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let mut normal = normal_numbers(seed);
         let stress = DVector::from_fn(ROWS, |i, _| (1 + i) as f64);
         let mut last = 0.0;
         let residual = DVector::from_fn(ROWS, |i, _| {
-            let z: f64 = StandardNormal.sample(&mut random);
-            last = correlation * last + (1.0 - correlation * correlation).sqrt() * z;
+            last = correlation * last + (1.0 - correlation * correlation).sqrt() * normal();
             (1.0 + rise * i as f64 / ROWS as f64) * last + 6.0 * (0.05 * i as f64).sin()
         });
         sizes(&[(0..ROWS).collect()], &residual, &stress)

@@ -78,11 +78,8 @@ impl RandomEffects {
 
 #[cfg(test)]
 mod tests {
-    use rand::SeedableRng;
-    use rand_chacha::ChaCha8Rng;
-    use rand_distr::{Distribution, StandardNormal};
-
     use super::*;
+    use crate::statistics::normal_numbers;
 
     /// Values that are known exactly have the mean and the standard deviation of any sample.
     #[test]
@@ -107,8 +104,7 @@ mod tests {
     /// to 98 % of 2,000 cases.
     #[test]
     fn intervals_hold_mean_and_difference() {
-        let mut random = ChaCha8Rng::seed_from_u64(1);
-        let mut normal = || -> f64 { StandardNormal.sample(&mut random) };
+        let mut normal = normal_numbers(1);
         let mut group = |mean: f64| {
             let one = |number: u8| {
                 let error = 0.1 + 0.1 * f64::from(number);
@@ -121,8 +117,7 @@ mod tests {
             let (first, second) = (group(1.0), group(1.5));
             let pairs = [(first.estimate(), 1.0), (first.difference(&second), 0.5)];
             for (held, (estimate, right)) in held.iter_mut().zip(pairs) {
-                *held +=
-                    usize::from(estimate.interval[0] <= right && right <= estimate.interval[1]);
+                *held += usize::from(estimate.holds(right));
             }
         }
         assert!(

@@ -46,18 +46,14 @@ fn at_stride(motion: &[f64], stride: usize) -> Vec<usize> {
 mod tests {
     use std::f64::consts::TAU;
 
-    use rand::SeedableRng;
-    use rand_chacha::ChaCha8Rng;
-    use rand_distr::{Distribution, StandardNormal};
-
     use super::*;
+    use crate::statistics::normal_numbers;
 
     /// A motion over ten periods of 120 instants.
     fn sampled(position: impl Fn(f64) -> f64, noise: f64) -> Vec<f64> {
-        let mut random = ChaCha8Rng::seed_from_u64(7);
-        let mut draw = || -> f64 { StandardNormal.sample(&mut random) };
+        let mut normal = normal_numbers(7);
         (0..1200)
-            .map(|i| position(f64::from(i) / 120.0) + noise * draw())
+            .map(|i| position(f64::from(i) / 120.0) + noise * normal())
             .collect()
     }
 

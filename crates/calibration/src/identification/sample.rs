@@ -2,11 +2,8 @@
 
 use std::fmt::Write;
 
-use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
-use rand_distr::{Distribution, StandardNormal};
-
 use super::recording::Recording;
+use crate::statistics::normal_numbers;
 
 /// A stiffening spring with a growing dashpot, shaken by a force of several frequencies:
 ///
@@ -105,13 +102,12 @@ impl Sample {
     /// The recording with its noise.
     pub fn recording(&self) -> Recording {
         let mut recording = self.exact();
-        let mut random = ChaCha8Rng::seed_from_u64(self.seed);
+        let mut normal = normal_numbers(self.seed);
         for signal in [&mut recording.extension, &mut recording.force] {
             let square =
                 signal.iter().map(|value| value * value).sum::<f64>() / signal.len() as f64;
             for value in signal {
-                let draw: f64 = StandardNormal.sample(&mut random);
-                *value += self.noise * square.sqrt() * draw;
+                *value += self.noise * square.sqrt() * normal();
             }
         }
         recording

@@ -169,20 +169,16 @@ pub fn bridged_parts(times: &[f64]) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use rand::SeedableRng;
-    use rand_chacha::ChaCha8Rng;
-    use rand_distr::{Distribution, StandardNormal};
-
     use super::*;
+    use crate::statistics::normal_numbers;
 
     #[test]
     fn the_noise_of_a_signal_is_found() {
         let times: Vec<f64> = (0..800).map(|i| 0.01 * f64::from(i)).collect();
-        let mut random = ChaCha8Rng::seed_from_u64(3);
-        let draw = |random: &mut ChaCha8Rng| -> f64 { StandardNormal.sample(random) };
+        let mut normal = normal_numbers(3);
         let signal: Vec<f64> = times
             .iter()
-            .map(|t| (3.0 * t + 0.2 * t * t).sin() + 0.05 * draw(&mut random))
+            .map(|t| (3.0 * t + 0.2 * t * t).sin() + 0.05 * normal())
             .collect();
         let actual = smooth(&times, &signal, 5).unwrap();
         assert!((actual.noise / 0.05 - 1.0).abs() < 0.08, "{actual:?}");

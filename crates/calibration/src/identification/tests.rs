@@ -1,6 +1,5 @@
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use rand_distr::{Distribution, StandardNormal};
 
 use super::*;
 use crate::document::{Statements, Table};

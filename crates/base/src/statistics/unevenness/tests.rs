@@ -1,10 +1,7 @@
 //! Noise of one size and of several, on grids.
 
-use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
-use rand_distr::{Distribution, StandardNormal};
-
 use super::*;
+use crate::statistics::normal_numbers;
 
 fn grid([columns, rows]: [usize; 2]) -> Vec<[f64; 2]> {
     let positions = (0..columns).flat_map(|i| (0..rows).map(move |j| (i, j)));
@@ -18,8 +15,7 @@ fn noise(
     positions: &[[f64; 2]],
     size: impl Fn([f64; 2]) -> f64,
 ) -> Vec<Option<[f64; 2]>> {
-    let mut random = ChaCha8Rng::seed_from_u64(seed);
-    let mut normal = || -> f64 { StandardNormal.sample(&mut random) };
+    let mut normal = normal_numbers(seed);
     positions
         .iter()
         .map(|position| Some([normal(), normal()].map(|value| value * size(*position))))

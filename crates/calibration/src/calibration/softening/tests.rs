@@ -1,8 +1,5 @@
 //! Softening: what comes back of its parameters, and what its intervals hold.
 
-use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
-use rand_distr::{Distribution, Normal};
 use rayon::prelude::*;
 
 use super::*;
@@ -10,6 +7,7 @@ use crate::calibration::*;
 use crate::document::Statements;
 use crate::material::registry::Law;
 use crate::material::{Card, HyperelasticLaw, NeoHooke, Softening};
+use crate::statistics::normal_numbers;
 
 const TRUTH: Softening = Softening {
     r: 1.8,
@@ -37,8 +35,7 @@ fn record(test: &str, noise: f64, seed: u64) -> TestData {
 /// The same of a specimen that was stretched before, to a strain that the file need not state.
 fn record_after(earlier: f64, test: &str, noise: f64, seed: u64) -> TestData {
     let law = NeoHooke { c10: C10 };
-    let mut random = ChaCha8Rng::seed_from_u64(seed);
-    let normal = Normal::new(0.0, noise.max(f64::MIN_POSITIVE)).unwrap();
+    let mut normal = normal_numbers(seed);
     let state = |x: f64| match test {
         "uniaxial" => {
             let actual = law.tension([1.0, 0.0], x);
@@ -57,12 +54,7 @@ fn record_after(earlier: f64, test: &str, noise: f64, seed: u64) -> TestData {
         let [stress, energy] = state(x);
         most = most.max(energy);
         let [factor, _] = TRUTH.factor(energy, most);
-        let error = if noise > 0.0 {
-            normal.sample(&mut random)
-        } else {
-            0.0
-        };
-        text += &format!("{},{}\n", 1.0 + x, factor * stress + error);
+        text += &format!("{},{}\n", 1.0 + x, factor * stress + noise * normal());
     }
     let mut reading = Statements::new();
     reading.insert("cycle".into(), "all".into());
@@ -140,10 +132,7 @@ fn intervals_of_noisy_cycles_hold_the_truth() {
         .into_par_iter()
         .map(|seed| {
             let fit = fitted(&[record("uniaxial", 0.004, seed)]);
-            std::array::from_fn(|index| {
-                let [low, high] = fit.quality.estimates[index].interval;
-                (low..=high).contains(&VALUES[index])
-            })
+            std::array::from_fn(|index| fit.quality.estimates[index].holds(VALUES[index]))
         })
         .collect();
     for index in 0..4 {

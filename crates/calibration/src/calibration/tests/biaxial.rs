@@ -2,11 +2,8 @@
 
 use std::path::Path;
 
-use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
-use rand_distr::{Distribution, StandardNormal};
-
 use super::*;
+use crate::statistics::normal_numbers;
 
 /// Laws with parameters of a soft tissue.
 const TISSUES: [(&str, &[f64]); 5] = [
@@ -34,7 +31,7 @@ pub fn record(
 ) -> TestData {
     let law = Law::named(law).unwrap();
     let (law, _) = law.with_values(values, StressMeasure::Nominal, StrainMeasure::Nominal);
-    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let mut normal = normal_numbers(seed);
     let states = ratios.iter().flat_map(|ratio| {
         (1..=30).map(move |row| ratio.map(|one| most * one * f64::from(row) / 30.0))
     });
@@ -44,10 +41,7 @@ pub fn record(
         .iter()
         .flatten()
         .fold(0.0, |most: f64, one| most.max(*one));
-    let mut noisy = |stress: f64| {
-        let z: f64 = StandardNormal.sample(&mut random);
-        stress + share * largest * z
-    };
+    let mut noisy = |stress: f64| stress + share * largest * normal();
     let rows = states
         .iter()
         .zip(&stresses)

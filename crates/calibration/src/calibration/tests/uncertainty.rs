@@ -1,15 +1,13 @@
 //! Intervals where more than white noise of one size makes parameters uncertain: zeros that were found in records, parameters at
 //! bounds, tests of unequal noise.
 
-use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
-use rand_distr::{Distribution, StandardNormal};
 use rayon::prelude::*;
 
 use crate::calibration::*;
 use crate::document::Statements;
 use crate::material::parameters::{StrainMeasure, StressMeasure};
 use crate::material::registry::Law;
+use crate::statistics::{Estimate, normal_numbers};
 
 const SEEDS: u64 = 40;
 
@@ -29,11 +27,10 @@ fn stress((name, values): Subject, test: &str, x: f64) -> f64 {
 
 /// Rows with noise of a standard deviation.
 fn rows(points: usize, noise: f64, seed: u64, row: &dyn Fn(f64) -> [f64; 2]) -> String {
-    let mut random = ChaCha8Rng::seed_from_u64(seed);
+    let mut normal = normal_numbers(seed);
     let line = |index: usize| {
         let [x, y] = row(index as f64 / (points - 1) as f64);
-        let z: f64 = StandardNormal.sample(&mut random);
-        format!("{x:.9},{:.9}\n", y + noise * z)
+        format!("{x:.9},{:.9}\n", y + noise * normal())
     };
     (0..points).map(line).collect()
 }
@@ -66,9 +63,7 @@ impl Held {
             }
             let known = quality.estimates.iter().zip(truth);
             let known = known.filter(|(one, _)| one.standard_error.is_finite());
-            let holds = |(one, truth): &(&crate::statistics::Estimate, &f64)| {
-                (one.interval[0]..=one.interval[1]).contains(*truth)
-            };
+            let holds = |(one, truth): &(&Estimate, &f64)| one.holds(**truth);
             Self {
                 fits: 1,
                 held: known.clone().filter(holds).count(),

@@ -173,23 +173,19 @@ fn specimens_differ(factors: &[f64], has_intervals: bool) -> String {
 
 #[cfg(test)]
 mod tests {
-    use rand::SeedableRng;
-    use rand_chacha::ChaCha8Rng;
-    use rand_distr::{Distribution, StandardNormal};
-
     use crate::calibration::{FitSettings, TestData, Weighting, fit};
     use crate::document::Statements;
     use crate::material::registry::Law;
+    use crate::statistics::normal_numbers;
 
     /// Tension of a neo-Hookean strip with noise of a size for each stress.
     fn tension(c10: f64, seed: u64, noise: fn(f64) -> f64) -> TestData {
-        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let mut normal = normal_numbers(seed);
         let mut text = "# test: uniaxial\nstretch [-],nominal_stress [MPa]\n".to_owned();
         for row in 0..80 {
             let stretch = 1.02 + 0.0125 * f64::from(row);
             let stress = 2.0 * c10 * (stretch - stretch.powi(-2));
-            let draw: f64 = StandardNormal.sample(&mut random);
-            text += &format!("{stretch},{:.7}\n", stress + noise(stress) * draw);
+            text += &format!("{stretch},{:.7}\n", stress + noise(stress) * normal());
         }
         TestData::parse("a.csv", &text, &Statements::default()).unwrap()
     }
@@ -273,19 +269,15 @@ mod tests {
 
     /// One sheet of Fung's energy c (e^Q − 1)/2, Q = 6 E₁² + 2.5 E₂² + 2 E₁ E₂ of Green's strains, at a ratio of strains.
     fn protocol(ratio: [f64; 2], seed: u64) -> String {
-        let mut random = ChaCha8Rng::seed_from_u64(seed);
+        let mut normal = normal_numbers(seed);
         let mut rows = String::new();
         for row in 0..30 {
             let stretch = ratio.map(|share| 1.0 + 0.3 * share * f64::from(row) / 29.0);
             let [e, f] = stretch.map(|l| 0.5 * (l * l - 1.0));
             let energy = 0.01 * (6.0 * e * e + 2.5 * f * f + 2.0 * e * f).exp();
-            let mut noise = || -> f64 {
-                let z: f64 = StandardNormal.sample(&mut random);
-                2e-4 * z
-            };
             let stresses = [
-                energy * (6.0 * e + f) * stretch[0] + noise(),
-                energy * (2.5 * f + e) * stretch[1] + noise(),
+                energy * (6.0 * e + f) * stretch[0] + 2e-4 * normal(),
+                energy * (2.5 * f + e) * stretch[1] + 2e-4 * normal(),
             ];
             rows += &format!(
                 "{},{},{:.6},{:.6}\n",

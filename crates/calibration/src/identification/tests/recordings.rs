@@ -1,6 +1,7 @@
 //! Recordings that bend the functions, or say little of them: what is told of each.
 
 use super::*;
+use crate::statistics::normal_numbers;
 
 /// Zeros, a drift, a lag and a wrong mass that the misfit hardly shows are named first, with their size.
 #[test]
@@ -82,11 +83,8 @@ fn swinging_by(
     stiffness: impl Fn(f64) -> f64,
     damping: impl Fn(f64) -> f64,
 ) -> Recording {
-    let mut random = ChaCha8Rng::seed_from_u64(11);
-    let mut noise = |size: f64| -> f64 {
-        let draw: f64 = StandardNormal.sample(&mut random);
-        0.02 * size * draw
-    };
+    let mut normal = normal_numbers(11);
+    let mut noise = |size: f64| 0.02 * size * normal();
     let mut recording = Recording::default();
     for i in 0..1200 {
         let t = 0.005 * f64::from(i);
