@@ -178,8 +178,7 @@ fn protocol(fit: &Fit, protocols: &[TestData], ratio: [f64; 2]) -> Option<TestDa
 mod tests {
     use super::*;
     use crate::calibration::tests::biaxial::record;
-    use crate::calibration::{FitSettings, fit};
-    use crate::material::registry::Law;
+    use crate::calibration::tests::helpers::fitted;
 
     const TISSUE: [f64; 5] = [0.01, 0.05, 3.0, 0.1, 0.6];
 
@@ -190,9 +189,7 @@ mod tests {
     }
 
     fn protocols(law: &str, ratios: &[[f64; 2]]) -> Protocols {
-        let tests = biaxial_test(ratios);
-        let fit = fit(Law::named(law).unwrap(), &tests, &FitSettings::default()).unwrap();
-        fit.protocols.unwrap()
+        fitted(law, &biaxial_test(ratios)).protocols.unwrap()
     }
 
     /// The right law predicts what it did not see within its noise; an isotropic one does not.
@@ -217,8 +214,7 @@ mod tests {
         assert!(then < 0.7 * today, "{before:?}");
         let share = before.stretches.map(|stretch| (stretch - 1.0) / 0.2);
         let tests = biaxial_test(&[&ratios[..], &[share]].concat());
-        let law = Law::named("holzapfel-gasser-ogden").unwrap();
-        let after = fit(law, &tests, &FitSettings::default()).unwrap();
+        let after = fitted("holzapfel-gasser-ogden", &tests);
         let index = after
             .parameters
             .iter()

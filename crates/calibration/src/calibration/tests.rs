@@ -6,10 +6,10 @@ use super::*;
 use crate::document::Statements;
 use crate::material::Card;
 use crate::material::curve::Mode;
-use crate::material::parameters::{StrainMeasure, StressMeasure};
-use crate::material::registry::{CARDS, DATA, Law};
+use crate::material::registry::{CARDS, DATA};
 
 pub mod biaxial;
+pub mod helpers;
 mod minimum;
 mod quality;
 mod simple_shear;
@@ -17,16 +17,14 @@ mod uncertainty;
 mod verdict;
 mod weighting;
 
+use helpers::{bounded, fit_with, fitted, law, parsed, uniaxial, weighted};
+
 fn data(names: &[&str]) -> Vec<TestData> {
     let read = |name: &&str| {
         let path = Path::new("../../materials/data").join(format!("{name}.csv"));
         TestData::read(&path, &Statements::new()).unwrap()
     };
     names.iter().map(read).collect()
-}
-
-fn fitted(law: &str, tests: &[TestData]) -> Fit {
-    fit(Law::named(law).unwrap(), tests, &FitSettings::default()).unwrap()
 }
 
 fn values(fit: &Fit) -> Vec<f64> {
@@ -109,8 +107,7 @@ fn a_rising_cauchy_curve_is_found_unstable() {
     };
     let rows: String = (0..100).map(row).collect();
     let text = format!("# test: uniaxial\nnominal_strain [-],cauchy_stress [MPa]\n{rows}");
-    let tests = [TestData::parse("cauchy.csv", &text, &Statements::new()).unwrap()];
-    let fit = fitted("veronda-westmann", &tests);
+    let fit = fitted("veronda-westmann", &[parsed(&text)]);
     let [_, high] = fit.quality.stable[0].stretches;
     assert!((high - 1.595).abs() < 1e-3, "{high}");
     assert!(fit.quality.r_squared > 0.999 && !fit.quality.is_stable());
@@ -118,7 +115,7 @@ fn a_rising_cauchy_curve_is_found_unstable() {
 
 #[test]
 fn every_card_with_data_is_found_again() {
-    let mut fitted = 0;
+    let mut count = 0;
     for (name, _) in CARDS {
         let card = Card::load(name, Path::new(".")).unwrap();
         let Some(record) = &card.fit else { continue };
@@ -127,20 +124,15 @@ fn every_card_with_data_is_found_again() {
             TestData::parse(file, text, &Statements::new()).unwrap()
         };
         let tests: Vec<TestData> = record.data.iter().map(read).collect();
-        let again = fit(
-            Law::named(&card.law_name).unwrap(),
-            &tests,
-            &FitSettings::default(),
-        )
-        .unwrap();
+        let again = fitted(&card.law_name, &tests);
         let estimates = &again.quality.estimates;
         for ((old, new), estimate) in card.parameters.iter().zip(&again.parameters).zip(estimates) {
             let difference = (old.value - new.value).abs() / estimate.standard_error;
             assert!(difference < 1e-3, "{name} {}: {difference:.1e}", old.key);
         }
-        fitted += 1;
+        count += 1;
     }
-    assert_eq!(fitted, 5);
+    assert_eq!(count, 5);
 }
 
 #[test]
@@ -170,9 +162,9 @@ fn all_laws_are_ranked_and_fibres_need_two_directions() {
 /// Strips along and across the fibres of a known law, and a sheet stretched both ways.
 #[test]
 fn the_parameters_of_aligned_fibres_are_found_from_two_directions() {
-    let law = Law::named("holzapfel-gasser-ogden").unwrap();
+    let name = "holzapfel-gasser-ogden";
     let truth = [0.02, 0.03, 0.8, 0.1, 0.5];
-    let (built, _) = law.with_values(&truth, StressMeasure::Nominal, StrainMeasure::Nominal);
+    let built = law(name, &truth);
     let file = |direction: usize| {
         let unit = [[1.0, 0.0], [0.0, 1.0]][direction - 1];
         let row = |i: i32| {
@@ -181,8 +173,7 @@ fn the_parameters_of_aligned_fibres_are_found_from_two_directions() {
         };
         let rows: String = (1..=40).map(row).collect();
         let head = format!("# test: uniaxial; direction: {direction}");
-        let text = format!("{head}\nstretch [-],nominal_stress [MPa]\n{rows}");
-        TestData::parse("strip.csv", &text, &Statements::new()).unwrap()
+        parsed(&format!("{head}\nstretch [-],nominal_stress [MPa]\n{rows}"))
     };
     let row = |i: i32| {
         let x = f64::from(i) / 60.0;
@@ -193,9 +184,8 @@ fn the_parameters_of_aligned_fibres_are_found_from_two_directions() {
     let text = format!(
         "# test: equibiaxial\nstretch [-],nominal_stress_1 [MPa],nominal_stress_2 [MPa]\n{rows}"
     );
-    let both = TestData::parse("both.csv", &text, &Statements::new()).unwrap();
-    let tests = [file(1), file(2), both];
-    let fit = fitted(law.name, &tests);
+    let tests = [file(1), file(2), parsed(&text)];
+    let fit = fitted(name, &tests);
     for (actual, expected) in values(&fit).iter().zip(truth) {
         assert!((actual / expected - 1.0).abs() < 1e-4, "{:?}", values(&fit));
     }
@@ -204,19 +194,12 @@ fn the_parameters_of_aligned_fibres_are_found_from_two_directions() {
 #[test]
 fn bounds_weights_and_few_points_are_respected() {
     let tests = data(&["treloar_1944_uniaxial"]);
-    let gent = Law::named("gent").unwrap();
-    let settings = FitSettings {
-        bounds: vec![("jm".into(), [90.0, 200.0])],
-        ..FitSettings::default()
-    };
-    let bound = fit(gent, &tests, &settings).unwrap();
+    let bound = fit_with("gent", &tests, &bounded("jm", [90.0, 200.0])).unwrap();
     assert_eq!(values(&bound)[1], 90.0);
     assert!(bound.quality.at_bound[1]);
-    let settings = FitSettings {
-        weighting: Weighting::Relative,
-        ..FitSettings::default()
-    };
-    let relative = fit(gent, &tests, &settings).unwrap().quality;
+    let relative = fit_with("gent", &tests, &weighted(Weighting::Relative))
+        .unwrap()
+        .quality;
     let absolute = fitted("gent", &tests).quality;
     assert!(relative.largest_relative_error_percent < absolute.largest_relative_error_percent);
     assert!(relative.rmse > absolute.rmse);
@@ -233,20 +216,17 @@ fn bounds_weights_and_few_points_are_respected() {
     let weight = Weighting::Relative.weight_of(&tests[0], small.stress) * tests[0].largest_stress;
     assert!((weight - 100.0).abs() < 1e-9, "{weight}");
 
-    let text = "# test: uniaxial\nstretch [-],nominal_stress [MPa]\n1.1,0.1\n1.2,0.2\n";
-    let few = [TestData::parse("a.csv", text, &Statements::new()).unwrap()];
-    let refused = fit(gent, &few, &FitSettings::default())
+    let few = [uniaxial("1.1,0.1\n1.2,0.2\n")];
+    let refused = fit_with("gent", &few, &FitSettings::default())
         .unwrap_err()
         .to_string();
     assert!(
         refused.contains("2 parameters need at least 3 points"),
         "{refused}"
     );
-    let settings = FitSettings {
-        bounds: vec![("jn".into(), [1.0, 2.0])],
-        ..FitSettings::default()
-    };
-    let refused = fit(gent, &tests, &settings).unwrap_err().to_string();
+    let refused = fit_with("gent", &tests, &bounded("jn", [1.0, 2.0]))
+        .unwrap_err()
+        .to_string();
     assert!(refused.contains("did you mean `jm`"), "{refused}");
 }
 
@@ -258,15 +238,11 @@ fn the_deviation_is_normalised_by_the_larger_mean() {
         format!("{stretch},{}\n", 0.2 * (stretch - stretch.powi(-2)))
     };
     let rows: String = (1..=20).map(row).collect();
-    let text = format!("# test: uniaxial\nstretch [-],nominal_stress [MPa]\n{rows}");
-    let tests = [TestData::parse("a.csv", &text, &Statements::new()).unwrap()];
+    let tests = [uniaxial(&rows)];
     for c10 in [0.2, 0.05] {
-        let settings = FitSettings {
-            bounds: vec![("c10".into(), [c10, c10 * (1.0 + 1e-12)])],
-            ..FitSettings::default()
-        };
-        let law = Law::named("neo-hooke").unwrap();
-        let actual = fit(law, &tests, &settings).unwrap().quality.nmad_percent;
+        let settings = bounded("c10", [c10, c10 * (1.0 + 1e-12)]);
+        let fit = fit_with("neo-hooke", &tests, &settings).unwrap();
+        let actual = fit.quality.nmad_percent;
         assert!((actual - 50.0).abs() < 1e-6, "{c10}: {actual}");
     }
 }
@@ -290,13 +266,7 @@ fn the_card_of_a_measured_curve_is_the_curve() {
 #[test]
 fn every_bound_is_kept_or_refused() {
     let tests = data(&["treloar_1944_uniaxial"]);
-    let with = |law: &str, key: &str, range: [f64; 2]| {
-        let settings = FitSettings {
-            bounds: vec![(key.to_owned(), range)],
-            ..FitSettings::default()
-        };
-        fit(Law::named(law).unwrap(), &tests, &settings)
-    };
+    let with = |law: &str, key: &str, range: [f64; 2]| fit_with(law, &tests, &bounded(key, range));
     for (law, key, range, held) in [
         ("neo-hooke", "c10", [0.0, 0.01], 0.01),
         ("neo-hooke", "c10", [0.9, 1.0], 0.9),
@@ -338,9 +308,7 @@ fn data_that_do_not_determine_a_parameter_give_it_no_certainty() {
         )
     };
     let rows: String = (1..=20).map(row).collect();
-    let text = format!("# test: uniaxial\nstretch [-],nominal_stress [MPa]\n{rows}");
-    let tests = [TestData::parse("a.csv", &text, &Statements::new()).unwrap()];
-    let fit = fitted("gent", &tests);
+    let fit = fitted("gent", &[uniaxial(&rows)]);
     assert!(
         !fit.quality.is_identifiable(),
         "{:?}",

@@ -115,7 +115,7 @@ impl Conversion {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::document::Statements;
+    use crate::calibration::tests::helpers::{parsed, uniaxial};
     use crate::material::parameters::StrainMeasure;
 
     /// Nominal to Cauchy, logarithmic and kPa, and back.
@@ -128,14 +128,13 @@ mod tests {
             "# test: planar; direction: 2\nstretch [-],nominal_stress [MPa]\n1.5,0.25\n2,0.5\n",
             "# test: biaxial\nstretch_1 [-],stretch_2 [-],nominal_stress_1 [MPa],nominal_stress_2 [MPa]\n1.5,1.25,0.5,0.25\n",
         ] {
-            let read = |text: &str| TestData::parse("a.csv", text, &Statements::new()).unwrap();
-            let data = read(text);
+            let data = parsed(text);
             let away = Conversion {
                 stress: StressMeasure::Cauchy,
                 strain: StrainColumn::Strain(StrainMeasure::Logarithmic),
                 unit: "kPa".into(),
             };
-            let there = read(&away.table(&data).unwrap());
+            let there = parsed(&away.table(&data).unwrap());
             assert_eq!(there.stress_measure, StressMeasure::Cauchy);
             for (one, other) in data.observations.iter().zip(&there.observations) {
                 let x = one.strains[one.axis];
@@ -151,7 +150,7 @@ mod tests {
                 strain: StrainColumn::Stretch,
                 unit: "MPa".into(),
             };
-            let again = read(&back.table(&there).unwrap());
+            let again = parsed(&back.table(&there).unwrap());
             let times = |data: &TestData| data.known_times().unwrap().map(<[f64]>::to_vec);
             assert_eq!(times(&again), times(&data), "{text}");
             assert_eq!(again.rise, data.rise, "{text}");
@@ -163,8 +162,7 @@ mod tests {
 
     #[test]
     fn another_unit_than_one_of_stress_is_refused() {
-        let text = "# test: uniaxial\nstretch [-],nominal_stress [MPa]\n1.5,0.25\n";
-        let data = TestData::parse("a.csv", text, &Statements::new()).unwrap();
+        let data = uniaxial("1.5,0.25\n");
         let conversion = Conversion {
             stress: StressMeasure::Nominal,
             strain: StrainColumn::Stretch,

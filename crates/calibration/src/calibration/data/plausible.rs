@@ -139,8 +139,7 @@ fn begin_at_one(observations: &[Observation]) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use crate::calibration::TestData;
-    use crate::document::Statements;
+    use crate::calibration::tests::helpers::parsed;
 
     #[test]
     fn a_stress_at_rest_is_told_where_it_is_more_than_scatter() {
@@ -151,7 +150,7 @@ mod tests {
                 let scatter = noise * f64::from((7 * row) % 5 - 2);
                 text += &format!("{strain:.3},{:.6}\n", rest + 0.3 * strain + scatter);
             }
-            let read = TestData::parse("a.csv", &text, &Statements::default()).unwrap();
+            let read = parsed(&text);
             let mut warnings = read.warnings.iter();
             warnings.any(|warning| warning.message.contains("the strain is zero"))
         };

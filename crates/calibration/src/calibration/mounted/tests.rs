@@ -5,19 +5,12 @@ use std::sync::Arc;
 
 use super::sheet::{MountedSheet, SheetLaw, SheetState};
 use super::*;
-use crate::calibration::fit::fit;
-use crate::calibration::settings::MEASURE;
-use crate::document::Statements;
-use crate::material::parameters::StressMeasure;
+use crate::calibration::tests::helpers::{fitted, law, parsed};
 use crate::material::{FungDemiray, HyperelasticLaw};
 use crate::statistics::normal_numbers;
 
 const RAKES: &str = "# mounting: rakes\n# tines: 5\n# tine spacing: 1.3 mm\n# tine inset: 0.8 mm\n# tine diameter: 0.3 mm\n\
                      # length: 8.4 mm\n# width: 8.4 mm\n# thickness: 1 mm\n";
-
-fn parsed(text: &str) -> TestData {
-    TestData::parse("a.csv", text, &Statements::new()).unwrap()
-}
 
 /// The record of a law on a mounting, pulled in some ratios up to a strain of the bars, with noise of the forces.
 fn record(
@@ -84,9 +77,8 @@ fn error_percent(fit: &Fit, law: &dyn HyperelasticLaw, strain: f64) -> f64 {
 
 /// A fit to the record of a law, whose stresses are right to so many per cent, and most of whose intervals hold the right values.
 fn accurate_fit(name: &str, right: &[f64], tests: &[TestData], percent: f64) -> Fit {
-    let known = Law::named(name).unwrap();
-    let law = known.with_values(right, StressMeasure::Nominal, MEASURE).0;
-    let actual = fit(known, tests, &FitSettings::default()).unwrap();
+    let law = law(name, right);
+    let actual = fitted(name, tests);
     let parameters = &actual.parameters;
     for strain in [0.03, 0.08] {
         let error = error_percent(&actual, &*law, strain);

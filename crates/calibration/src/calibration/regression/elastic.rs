@@ -336,13 +336,10 @@ impl Misfit<Elastic<'_>> {
 mod tests {
     use super::*;
     use crate::calibration::settings::Weighting;
-    use crate::document::Statements;
-
-    const TEXT: &str =
-        "# test: uniaxial\nstretch [-],nominal_stress [MPa]\n1.2,0.05\n1.6,0.13\n2.0,0.15\n";
+    use crate::calibration::tests::helpers::uniaxial;
 
     fn tests() -> [TestData; 1] {
-        [TestData::parse("a.csv", TEXT, &Statements::new()).unwrap()]
+        [uniaxial("1.2,0.05\n1.6,0.13\n2.0,0.15\n")]
     }
 
     /// Σ w² f σ/Σ w² f² with the slope f = 2 (λ − λ⁻²), and the secant Σ |σ x|/Σ x².

@@ -7,8 +7,8 @@ use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 
 use super::*;
+use crate::calibration::tests::helpers::{law, parsed, uniaxial};
 use crate::calibration::*;
-use crate::document::Statements;
 use crate::material::Card;
 use crate::material::registry::Law;
 use crate::material::viscosity::{Relaxation, ViscousMaterial};
@@ -27,9 +27,8 @@ fn series(terms: &[(f64, f64)]) -> ViscousMaterial {
 /// A file of rows of time, nominal strain and nominal stress.
 fn data(rows: impl Iterator<Item = [f64; 3]>, head: &str) -> TestData {
     let rows: String = rows.map(|[t, x, p]| format!("{t},{x},{p}\n")).collect();
-    let text =
-        format!("# test: uniaxial{head}\ntime [s],nominal_strain [-],nominal_stress [MPa]\n{rows}");
-    TestData::parse("relaxation.csv", &text, &Statements::new()).unwrap()
+    let names = "time [s],nominal_strain [-],nominal_stress [MPa]";
+    parsed(&format!("# test: uniaxial{head}\n{names}\n{rows}"))
 }
 
 /// P = S λ of a history with S∞ of neo-Hooke, 1 MPa.
@@ -37,17 +36,8 @@ fn followed(strains: &[[f64; 2]], head: &str, material: &ViscousMaterial) -> Vec
     let test = data(strains.iter().map(|[t, x]| [*t, *x, 1.0]), head);
     let tests = [test];
     let history = &History::all(&tests, false).unwrap()[0];
-    let long = history.long_time_stress(&tests[0], &*law(&[1.0]));
+    let long = history.long_time_stress(&tests[0], &*law("neo-hooke", &[1.0]));
     history.stresses(&tests[0], &long, material)
-}
-
-fn law(values: &[f64]) -> Box<dyn crate::material::HyperelasticLaw> {
-    let nominal = crate::material::parameters::StressMeasure::Nominal;
-    let strain = crate::material::parameters::StrainMeasure::Nominal;
-    Law::named("neo-hooke")
-        .unwrap()
-        .with_values(values, nominal, strain)
-        .0
 }
 
 /// S∞ of neo-Hooke with C₁₀ = 1 MPa.
@@ -262,10 +252,7 @@ fn intervals_hold_the_truth() {
     let held = |seed: u64| {
         let fit = fitted(&[ramp_and_hold(1e-4, seed)], Terms::Exactly(2));
         let estimates = fit.quality.estimates.iter().zip(TRUTH);
-        let inside = estimates.map(|(estimate, truth)| {
-            let [low, high] = estimate.interval;
-            (low..=high).contains(&truth)
-        });
+        let inside = estimates.map(|(estimate, truth)| estimate.holds(truth));
         inside.collect::<Vec<bool>>()
     };
     let trials: Vec<Vec<bool>> = (0..100_u64).into_par_iter().map(held).collect();
@@ -283,8 +270,7 @@ fn intervals_hold_the_truth() {
 
 #[test]
 fn what_cannot_be_fitted_is_told_with_a_remedy() {
-    let without = "# test: uniaxial\nstretch [-],nominal_stress [MPa]\n1.1,0.1\n1.2,0.2\n1.3,0.3\n";
-    let without = [TestData::parse("a.csv", without, &Statements::new()).unwrap()];
+    let without = [uniaxial("1.1,0.1\n1.2,0.2\n1.3,0.3\n")];
     let backwards = [data(
         [
             [0.0, 0.1, 0.1],

@@ -29,8 +29,7 @@ pub fn record(
     (ratios, most): (&[[f64; 2]], f64),
     (share, seed): (f64, u64),
 ) -> TestData {
-    let law = Law::named(law).unwrap();
-    let (law, _) = law.with_values(values, StressMeasure::Nominal, StrainMeasure::Nominal);
+    let law = super::law(law, values);
     let mut normal = normal_numbers(seed);
     let states = ratios.iter().flat_map(|ratio| {
         (1..=30).map(move |row| ratio.map(|one| most * one * f64::from(row) / 30.0))
@@ -47,13 +46,11 @@ pub fn record(
         .zip(&stresses)
         .map(|([x, y], [p, q])| format!("{},{},{},{}\n", 1.0 + x, 1.0 + y, noisy(*p), noisy(*q)));
     let head = "# test: biaxial; one specimen: yes\nstretch_1,stretch_2,nominal_stress_1 [MPa],nominal_stress_2 [MPa]\n";
-    let text = head.to_owned() + &rows.collect::<String>();
-    TestData::parse("sheet.csv", &text, &Statements::new()).unwrap()
+    parsed(&(head.to_owned() + &rows.collect::<String>()))
 }
 
 fn of(law: &str, data: &TestData, settings: &FitSettings) -> Fit {
-    let data = std::slice::from_ref(data);
-    fit(Law::named(law).unwrap(), data, settings).unwrap()
+    fit_with(law, std::slice::from_ref(data), settings).unwrap()
 }
 
 fn starts(starts: usize) -> FitSettings {
@@ -64,10 +61,7 @@ fn starts(starts: usize) -> FitSettings {
 }
 
 fn stated(key: &str, value: f64) -> FitSettings {
-    FitSettings {
-        bounds: vec![(key.into(), [value; 2])],
-        ..FitSettings::default()
-    }
+    bounded(key, [value; 2])
 }
 
 /// The optima of 400 starts in a real tissue, from those of one usual run.
@@ -102,9 +96,8 @@ fn parameters_of_made_tissue_lie_in_their_intervals_and_other_laws_do_not_explai
             _ => assert!(held.is_empty(), "{law}: {held:?}"),
         }
         for (index, (estimate, truth)) in actual.quality.estimates.iter().zip(truth).enumerate() {
-            let [low, high] = estimate.interval;
-            let is_inside = (low..=high).contains(truth) || actual.quality.held[index];
-            assert!(is_inside, "{law} {index}: {low} … {high}");
+            let is_inside = estimate.holds(*truth) || actual.quality.held[index];
+            assert!(is_inside, "{law} {index}: {estimate:?}");
         }
         let precise = noisy_protocols(law, truth, 5e-4, 1);
         for (other, _) in TISSUES {
@@ -120,12 +113,11 @@ fn parameters_of_made_tissue_lie_in_their_intervals_and_other_laws_do_not_explai
 #[test]
 fn shear_determines_the_angle_with_its_sign_and_the_shear_stiffness() {
     let truth = [0.02, 9.0, 5.0, 3.0, 4.0, -0.3];
-    let law = Law::named("fung").unwrap();
-    let (sheet, _) = law.with_values(&truth, StressMeasure::Nominal, StrainMeasure::Nominal);
+    let sheet = law("fung", &truth);
     let test = |head: &str, stress: &dyn Fn(f64) -> f64| {
         let row = |x: f64| format!("{x},{}\n", stress(x));
         let rows: String = (1..=30).map(|row| 0.01 * f64::from(row)).map(row).collect();
-        TestData::parse("a.csv", &(head.to_owned() + &rows), &Statements::new()).unwrap()
+        parsed(&(head.to_owned() + &rows))
     };
     let data = [
         noisy_protocols("fung", &truth, 1e-6, 0),
@@ -138,7 +130,7 @@ fn shear_determines_the_angle_with_its_sign_and_the_shear_stiffness() {
             &|strain| sheet.tension([1.0, 0.0], strain).nominal_stress,
         ),
     ];
-    let actual = fit(law, &data, &FitSettings::default()).unwrap();
+    let actual = fitted("fung", &data);
     for (parameter, truth) in actual.parameters.iter().zip(truth) {
         let off = (parameter.value / truth - 1.0).abs();
         assert!(off < 1e-3, "{} {}", parameter.key, parameter.value);
@@ -199,10 +191,6 @@ fn a_stated_parameter_is_not_fitted() {
     // An angle beyond the period is what it says.
     let actual = of(law, &data, &stated("angle", -0.35));
     assert_eq!(actual.parameters[5].value, -0.35);
-    let refused = fit(
-        Law::named(law).unwrap(),
-        std::slice::from_ref(&data),
-        &stated("delta", 1.5),
-    );
+    let refused = fit_with(law, std::slice::from_ref(&data), &stated("delta", 1.5));
     assert!(refused.unwrap_err().to_string().contains("delta"));
 }

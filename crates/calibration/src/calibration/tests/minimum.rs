@@ -2,15 +2,15 @@
 
 use std::path::Path;
 
+use super::helpers::{fit_with, uniaxial, weighted};
 use crate::calibration::least_squares::{Residuals, lower};
 use crate::calibration::*;
 use crate::document::Statements;
-use crate::material::registry::Law;
 use crate::statistics::normal_numbers;
 
 fn fitted(law: &str, path: &str) -> Fit {
     let data = TestData::read(Path::new(path), &Statements::new()).unwrap();
-    fit(Law::named(law).unwrap(), &[data], &FitSettings::default()).unwrap()
+    super::fitted(law, &[data])
 }
 
 /// The optimum of trust-region least squares from several random starts. A fit that once ended at 15.7 rad had a k₁ of 0.17314 MPa.
@@ -67,11 +67,7 @@ fn terms_of_a_sum_of_powers_are_in_order() {
     let data = "../../materials/data/treloar_1944_uniaxial.csv";
     let data = [TestData::read(Path::new(data), &Statements::new()).unwrap()];
     for weighting in [Weighting::Absolute, Weighting::Relative] {
-        let settings = FitSettings {
-            weighting,
-            ..FitSettings::default()
-        };
-        let result = fit(Law::named("ogden-2").unwrap(), &data, &settings).unwrap();
+        let result = fit_with("ogden-2", &data, &weighted(weighting)).unwrap();
         assert!(result.parameters[1].value > result.parameters[3].value);
     }
 }
@@ -89,10 +85,7 @@ fn a_smooth_trend_is_a_misfit_of_the_law_where_noise_is_smallest() {
 /// Noise of neo-Hooke that is the same everywhere, by relative weights: large only where the stress is small.
 #[test]
 fn even_noise_by_relative_weights_is_no_pattern() {
-    let settings = FitSettings {
-        weighting: Weighting::Relative,
-        ..FitSettings::default()
-    };
+    let settings = weighted(Weighting::Relative);
     let systematic = (0..60).filter(|seed| {
         let mut normal = normal_numbers(*seed);
         let rows = (1..=60).map(|row| {
@@ -101,9 +94,7 @@ fn even_noise_by_relative_weights_is_no_pattern() {
             format!("{stretch},{stress}\n")
         });
         let rows: String = rows.collect();
-        let text = format!("# test: uniaxial\nstretch [-],nominal_stress [MPa]\n{rows}");
-        let data = [TestData::parse("a.csv", &text, &Statements::new()).unwrap()];
-        let result = fit(Law::named("neo-hooke").unwrap(), &data, &settings).unwrap();
+        let result = fit_with("neo-hooke", &[uniaxial(&rows)], &settings).unwrap();
         result.quality.verdict.unwrap().answer == Answer::Systematic
     });
     let count = systematic.count();

@@ -4,20 +4,15 @@ use std::path::Path;
 
 use nalgebra::{DMatrix, DVector};
 
+use super::helpers::{bounded, fit_with, fitted, uniaxial, weighted};
 use crate::calibration::*;
 use crate::document::Statements;
 use crate::material::curve::Mode;
-use crate::material::registry::Law;
 use crate::statistics::{Curve, CurveResiduals};
 
 fn tests(points: &[(f64, f64)]) -> [TestData; 1] {
     let rows: String = points.iter().map(|(l, s)| format!("{l},{s}\n")).collect();
-    let text = format!("# test: uniaxial\nstretch [-],nominal_stress [MPa]\n{rows}");
-    [TestData::parse("a.csv", &text, &Statements::new()).unwrap()]
-}
-
-fn fitted(law: &str, tests: &[TestData], settings: &FitSettings) -> Fit {
-    fit(Law::named(law).unwrap(), tests, settings).unwrap()
+    [uniaxial(&rows)]
 }
 
 /// 2 (λ − λ⁻²), which the neo-Hookean C₁₀ is multiplied by.
@@ -37,12 +32,8 @@ fn the_figures_of_a_fit_are_as_defined() {
         (1.01, 0.004),
     ];
     for weighting in [Weighting::Absolute, Weighting::Relative] {
-        let settings = FitSettings {
-            weighting,
-            ..FitSettings::default()
-        };
         let data = tests(&points);
-        let actual = fitted("neo-hooke", &data, &settings);
+        let actual = fit_with("neo-hooke", &data, &weighted(weighting)).unwrap();
         let c10 = actual.parameters[0].value;
         let off: Vec<f64> = points.iter().map(|(l, s)| s - c10 * slope(*l)).collect();
         let squares: f64 = off.iter().map(|d| d * d).sum();
@@ -82,7 +73,7 @@ fn the_figures_of_a_fit_are_as_defined() {
         }
     }
     // Three points, k = 2: n − k − 1 is zero, and nothing can be said.
-    let few = fitted("neo-hooke", &tests(&points[..2]), &FitSettings::default());
+    let few = fitted("neo-hooke", &tests(&points[..2]));
     assert_eq!(few.quality.aicc, f64::INFINITY);
 }
 
@@ -97,7 +88,7 @@ fn two_parameters_have_the_uncertainty_of_linear_regression() {
         };
         let points: Vec<_> = (1..=12).map(row).collect();
         let data = tests(&points);
-        let actual = fitted("mooney-rivlin", &data, &FitSettings::default());
+        let actual = fitted("mooney-rivlin", &data);
         let [c10, c01] = [0, 1].map(|index| actual.parameters[index].value);
         let design = DMatrix::from_fn(12, 2, |i, j| {
             let (stretch, _) = points[i];
@@ -136,16 +127,13 @@ fn two_parameters_have_the_uncertainty_of_linear_regression() {
 
 #[test]
 fn a_bound_nearby_does_not_hold_a_parameter() {
-    let settings = FitSettings {
-        bounds: vec![("c10".into(), [0.0, 0.052])],
-        ..FitSettings::default()
-    };
+    let settings = bounded("c10", [0.0, 0.052]);
     let points = [
         (1.2, 0.05 * slope(1.2) + 1e-4),
         (1.6, 0.05 * slope(1.6)),
         (2.0, 0.05 * slope(2.0)),
     ];
-    let actual = fitted("neo-hooke", &tests(&points), &settings);
+    let actual = fit_with("neo-hooke", &tests(&points), &settings).unwrap();
     let estimate = actual.quality.estimates[0];
     assert!((actual.parameters[0].value - 0.05).abs() < 1e-3);
     assert!(!actual.quality.at_bound[0] && estimate.standard_error > 0.0);
@@ -177,11 +165,7 @@ fn stress_measures_are_not_mixed() {
         TestData::parse(name, &text, &Statements::new()).unwrap()
     };
     let tests = [read("a.csv", "nominal"), read("b.csv", "cauchy")];
-    let refused = fit(
-        Law::named("neo-hooke").unwrap(),
-        &tests,
-        &FitSettings::default(),
-    );
+    let refused = fit_with("neo-hooke", &tests, &FitSettings::default());
     let refused = refused.unwrap_err().to_string();
     assert!(
         refused.contains("a.csv gives nominal stress and b.csv gives cauchy"),
@@ -195,9 +179,8 @@ fn a_law_that_does_not_follow_the_data_at_all_is_refused_with_what_was_read() {
     let points: Vec<(f64, f64)> = (1..=20)
         .map(|i| (1.0 + 0.05 * f64::from(i), 0.11 - 0.1 * f64::from(i)))
         .collect();
-    let law = Law::named("neo-hooke").unwrap();
     let settings = FitSettings::default();
-    let refused = fit(law, &tests(&points), &settings).unwrap_err();
+    let refused = fit_with("neo-hooke", &tests(&points), &settings).unwrap_err();
     let message = refused.to_string();
     assert_eq!(refused.exit_code(), 2);
     assert!(
@@ -219,7 +202,7 @@ fn protocols_of_a_biaxial_test_support_the_tests_that_they_cover() {
     let reading = [("thickness".to_owned(), "0.8 mm".to_owned())].into();
     let path = Path::new("../../examples/biaxial_record.csv");
     let data = [TestData::read(path, &reading).unwrap()];
-    let actual = fitted("neo-hooke", &data, &FitSettings::default());
+    let actual = fitted("neo-hooke", &data);
     assert_eq!(actual.quality.untested, [Mode::Uniaxial, Mode::Planar]);
     let message = &actual.quality.warnings;
     let expected = "uniaxial and planar stresses are predictions that no data support";
@@ -231,11 +214,8 @@ fn protocols_of_a_biaxial_test_support_the_tests_that_they_cover() {
 
 #[test]
 fn a_card_is_called_by_the_names_of_its_files() {
-    let actual = fitted(
-        "neo-hooke",
-        &tests(&[(1.1, 0.03), (1.2, 0.05), (1.5, 0.1)]),
-        &FitSettings::default(),
-    );
+    let data = tests(&[(1.1, 0.03), (1.2, 0.05), (1.5, 0.1)]);
+    let actual = fitted("neo-hooke", &data);
     let provenance = Provenance {
         files: vec!["../../export.csv".to_owned()],
         ..Provenance::default()

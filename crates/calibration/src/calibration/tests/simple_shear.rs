@@ -1,7 +1,7 @@
 //! Simple shear beside tension: the shear stress of a block between two plates.
 
-use crate::calibration::{FitSettings, Memory, Terms, TestData, fit};
-use crate::document::Statements;
+use super::helpers::{fitted, parsed, uniaxial};
+use crate::calibration::{FitSettings, Memory, Terms, TestData};
 use crate::material::registry::Law;
 
 const C10: f64 = 0.03;
@@ -24,7 +24,7 @@ fn sheared(is_machine: bool, sign: f64) -> TestData {
     } else {
         "# test: simple-shear\nshear_strain [-],shear_stress [kPa]\n"
     };
-    TestData::parse("shear.csv", &format!("{head}{rows}"), &Statements::new()).unwrap()
+    parsed(&format!("{head}{rows}"))
 }
 
 /// P = 2 (λ − λ⁻²)(C₁₀ + C₀₁/λ).
@@ -35,23 +35,16 @@ fn pulled() -> TestData {
         format!("{stretch:.9},{stress:.9}\n")
     });
     let rows: String = rows.collect();
-    let text = format!("# test: uniaxial\nstretch [-],nominal_stress [MPa]\n{rows}");
-    TestData::parse("pull.csv", &text, &Statements::new()).unwrap()
+    uniaxial(&rows)
 }
 
 #[test]
 fn shear_and_tension_together_determine_both_parameters_of_mooney_and_rivlin() {
-    let law = Law::named("mooney-rivlin").unwrap();
     for is_machine in [false, true] {
         for sign in [1.0, -1.0] {
             let tests = [sheared(is_machine, sign), pulled()];
-            let fit = fit(law, &tests, &FitSettings::default()).unwrap();
-            let actual: Vec<f64> = fit
-                .parameters
-                .iter()
-                .map(|parameter| parameter.value)
-                .collect();
-            for (actual, truth) in actual.iter().zip([C10, C01]) {
+            let fit = fitted("mooney-rivlin", &tests);
+            for (actual, truth) in super::values(&fit).iter().zip([C10, C01]) {
                 assert!((actual / truth - 1.0).abs() < 1e-6, "{actual} {truth}");
             }
         }
@@ -60,8 +53,7 @@ fn shear_and_tension_together_determine_both_parameters_of_mooney_and_rivlin() {
 
 #[test]
 fn shear_alone_determines_the_sum_alone_and_its_range_is_that_of_the_principal_stretches() {
-    let law = Law::named("neo-hooke").unwrap();
-    let fit = fit(law, &[sheared(false, 1.0)], &FitSettings::default()).unwrap();
+    let fit = fitted("neo-hooke", &[sheared(false, 1.0)]);
     assert!((fit.parameters[0].value / (C10 + C01) - 1.0).abs() < 1e-6);
     let [low, high] = fit.quality.stretch_range;
     assert!((high - low - 0.78).abs() < 1e-9 && (low * high - 1.0).abs() < 1e-12);

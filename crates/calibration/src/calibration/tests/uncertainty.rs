@@ -3,10 +3,8 @@
 
 use rayon::prelude::*;
 
+use super::helpers::{fitted, law, parsed};
 use crate::calibration::*;
-use crate::document::Statements;
-use crate::material::parameters::{StrainMeasure, StressMeasure};
-use crate::material::registry::Law;
 use crate::statistics::{Estimate, normal_numbers};
 
 const SEEDS: u64 = 40;
@@ -16,13 +14,7 @@ type Subject = (&'static str, &'static [f64]);
 
 /// Nominal stress in a usual test.
 fn stress((name, values): Subject, test: &str, x: f64) -> f64 {
-    let law = Law::named(name).unwrap();
-    let (law, _) = law.with_values(values, StressMeasure::Nominal, StrainMeasure::Nominal);
-    match test {
-        "uniaxial" => law.tension([1.0, 0.0], x).nominal_stress,
-        "planar" => law.biaxial([x, 0.0])[0],
-        _ => law.biaxial([x, x])[0],
-    }
+    super::helpers::stress(&*law(name, values), test, x)
 }
 
 /// Rows with noise of a standard deviation.
@@ -33,10 +25,6 @@ fn rows(points: usize, noise: f64, seed: u64, row: &dyn Fn(f64) -> [f64; 2]) -> 
         format!("{x:.9},{:.9}\n", y + noise * normal())
     };
     (0..points).map(line).collect()
-}
-
-fn read(text: &str) -> TestData {
-    TestData::parse("a.csv", text, &Statements::new()).unwrap()
 }
 
 /// Fits with intervals, intervals that hold the truth, and all intervals.
@@ -51,13 +39,7 @@ impl Held {
     /// Over all seeds of the tests of one.
     fn of((name, truth): Subject, tests: &(dyn Fn(u64) -> Vec<TestData> + Sync)) -> Self {
         let one = |seed: u64| {
-            let fit = fit(
-                Law::named(name).unwrap(),
-                &tests(seed),
-                &FitSettings::default(),
-            )
-            .unwrap();
-            let quality = fit.quality;
+            let quality = fitted(name, &tests(seed)).quality;
             if !quality.has_intervals() {
                 return Self::default();
             }
@@ -100,7 +82,7 @@ fn record(subject: Subject, beginning: &str, seed: u64) -> Vec<TestData> {
         _ => [20.0 * 0.8 * share, force(0.8 * share) - 0.05 * force(0.8)],
     };
     let head = "# test: uniaxial; length: 20 mm; area: 10 mm^2\nExtension [mm],Load [N]\n";
-    vec![read(&(head.to_owned() + &rows(200, noise, seed, &row)))]
+    vec![parsed(&(head.to_owned() + &rows(200, noise, seed, &row)))]
 }
 
 #[test]
@@ -125,7 +107,7 @@ fn intervals_beside_a_parameter_at_its_bound_hold_the_truth() {
         let row = |share: f64| [1.0 + 0.8 * share, stress(subject, "uniaxial", 0.8 * share)];
         let noise = 0.01 * stress(subject, "uniaxial", 0.8);
         let head = "# test: uniaxial\nstretch [-],nominal_stress [MPa]\n";
-        vec![read(&(head.to_owned() + &rows(40, noise, seed, &row)))]
+        vec![parsed(&(head.to_owned() + &rows(40, noise, seed, &row)))]
     });
     assert!(actual.intervals > 50 && actual.share() > 0.9, "{actual:?}");
 }
@@ -148,7 +130,7 @@ fn tests_of_unequal_noise_have_intervals_that_hold_the_truth() {
                 let noise = noises[number] * stress(subject, test, 0.6);
                 let seed = 3 * seed + number as u64;
                 let head = format!("# test: {test}\nstretch [-],nominal_stress [MPa]\n");
-                read(&(head + &rows(20, noise, seed, &row)))
+                parsed(&(head + &rows(20, noise, seed, &row)))
             };
             tests.map(test).collect()
         });

@@ -2,18 +2,15 @@
 
 use rayon::prelude::*;
 
+use super::helpers::{fitted, law, uniaxial};
 use crate::calibration::*;
-use crate::document::Statements;
-use crate::material::parameters::{StrainMeasure, StressMeasure};
-use crate::material::registry::Law;
 use crate::statistics::normal_numbers;
 
 const YEOH: [f64; 3] = [0.05, 0.02, 0.002];
 
 /// A uniaxial test of Yeoh's law to λ = 2, a point for each value of noise in MPa, its stresses with so many decimals.
 fn curve(noise: &[f64], decimals: usize) -> [TestData; 1] {
-    let law = Law::named("yeoh").unwrap();
-    let (law, _) = law.with_values(&YEOH, StressMeasure::Nominal, StrainMeasure::Nominal);
+    let law = law("yeoh", &YEOH);
     let count = noise.len() as f64;
     let row = |(index, noise): (usize, &f64)| {
         let x = (1 + index) as f64 / count;
@@ -21,8 +18,7 @@ fn curve(noise: &[f64], decimals: usize) -> [TestData; 1] {
         format!("{},{stress:.decimals$}\n", 1.0 + x)
     };
     let rows: String = noise.iter().enumerate().map(row).collect();
-    let text = format!("# test: uniaxial\nstretch [-],nominal_stress [MPa]\n{rows}");
-    [TestData::parse("a.csv", &text, &Statements::new()).unwrap()]
+    [uniaxial(&rows)]
 }
 
 /// Noise of 0.005 MPa, about 1 % of the largest stress, whose neighbours correlate by so much.
@@ -35,10 +31,6 @@ fn noise(count: usize, correlation: f64, seed: u64) -> Vec<f64> {
         0.005 * last
     };
     (0..count).map(|_| next()).collect()
-}
-
-fn fitted(law: &str, tests: &[TestData]) -> Fit {
-    fit(Law::named(law).unwrap(), tests, &FitSettings::default()).unwrap()
 }
 
 fn answers(law: &str, correlation: f64) -> Vec<Answer> {

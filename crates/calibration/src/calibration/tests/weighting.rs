@@ -3,11 +3,8 @@
 
 use rayon::prelude::*;
 
+use super::helpers::{fit_with, law, parsed, uniaxial, weighted};
 use crate::calibration::*;
-use crate::document::Statements;
-use crate::material::HyperelasticLaw;
-use crate::material::parameters::{StrainMeasure, StressMeasure};
-use crate::material::registry::Law;
 use crate::statistics::normal_numbers;
 
 const SEEDS: u64 = 40;
@@ -24,16 +21,6 @@ const SUBJECTS: [Subject; 5] = [
     ("ogden-1", &[0.05, 3.0], 2.0),
 ];
 
-fn of(name: &str, values: &[f64]) -> Box<dyn HyperelasticLaw> {
-    let law = Law::named(name).unwrap();
-    law.with_values(values, StressMeasure::Nominal, StrainMeasure::Nominal)
-        .0
-}
-
-fn read(text: &str) -> TestData {
-    TestData::parse("a.csv", text, &Statements::new()).unwrap()
-}
-
 /// A test of a law with so many points and noise that suits the weighting.
 fn measured(
     test: &str,
@@ -43,12 +30,8 @@ fn measured(
     seed: u64,
 ) -> TestData {
     let (name, values, most) = subject;
-    let law = of(name, values);
-    let stress = |x: f64| match test {
-        "uniaxial" => law.tension([1.0, 0.0], x).nominal_stress,
-        "planar" => law.biaxial([x, 0.0])[0],
-        _ => law.biaxial([x, x])[0],
-    };
+    let law = law(name, values);
+    let stress = |x: f64| super::helpers::stress(&*law, test, x);
     let scale = 0.3 * stress(most - 1.0);
     let mut normal = normal_numbers(seed);
     let mut text = format!("# test: {test}\nstretch [-],nominal_stress [MPa]\n");
@@ -61,17 +44,11 @@ fn measured(
         let noise = NOISE * size * normal();
         text += &format!("{:.10},{:.10}\n", 1.0 + x, stress(x) + noise);
     }
-    read(&text)
+    parsed(&text)
 }
 
 fn fitted(name: &str, tests: &[TestData], weighting: Weighting) -> Quality {
-    let settings = FitSettings {
-        weighting,
-        ..FitSettings::default()
-    };
-    fit(Law::named(name).unwrap(), tests, &settings)
-        .unwrap()
-        .quality
+    fit_with(name, tests, &weighted(weighting)).unwrap().quality
 }
 
 /// How many fits were called systematic, intervals that hold the truth, and intervals.
@@ -161,13 +138,13 @@ fn a_wrong_law_is_found_by_either_weighting() {
 #[test]
 fn proportional_noise_does_not_make_a_law_softer() {
     let mut normal = normal_numbers(1);
-    let mut text = "# test: uniaxial\nstretch [-],nominal_stress [MPa]\n".to_owned();
+    let mut rows = String::new();
     for row in 0..4000 {
         let stretch = 1.1 + row as f64 / 4000.0;
         let stress = 0.1 * (stretch - stretch.powi(-2)) * (1.0 + 0.1 * normal());
-        text += &format!("{stretch:.8},{stress:.10}\n");
+        rows += &format!("{stretch:.8},{stress:.10}\n");
     }
-    let actual = fitted("neo-hooke", &[read(&text)], Weighting::Relative);
+    let actual = fitted("neo-hooke", &[uniaxial(&rows)], Weighting::Relative);
     let one = actual.estimates[0];
     assert!((one.value / 0.05 - 1.0).abs() < 0.006, "{one:?}");
     assert!(one.interval[0] < 0.05 && 0.05 < one.interval[1], "{one:?}");
@@ -182,8 +159,8 @@ fn neo_hooke(stretches: &[f64], noise: f64, seed: u64) -> Vec<(f64, f64)> {
     stretches.iter().map(&mut row).collect()
 }
 
-fn answer(text: &str) -> Answer {
-    let actual = fitted("neo-hooke", &[read(text)], Weighting::Absolute);
+fn answer(data: TestData) -> Answer {
+    let actual = fitted("neo-hooke", &[data], Weighting::Absolute);
     actual.verdict.unwrap().answer
 }
 
@@ -197,11 +174,8 @@ fn commanded_strains_are_no_rounding() {
         for decimals in [1, 6] {
             let rows = neo_hooke(&replicates, 0.03, seed).into_iter();
             let rows = rows.map(|(l, s)| format!("{l:.decimals$},{s:.6}\n"));
-            let text = format!(
-                "# test: uniaxial\nstretch [-],nominal_stress [MPa]\n{}",
-                rows.collect::<String>()
-            );
-            assert!(answer(&text).has_intervals(), "{seed} {decimals}");
+            let data = uniaxial(&rows.collect::<String>());
+            assert!(answer(data).has_intervals(), "{seed} {decimals}");
         }
         let rows = neo_hooke(&percent, 0.003, seed).into_iter();
         let rows = rows.map(|(l, s)| format!("{:.0},{:.4}\n", 100.0 * (l - 1.0), 1e3 * s));
@@ -209,7 +183,7 @@ fn commanded_strains_are_no_rounding() {
             "# test: uniaxial\nnominal_strain [%],nominal_stress [kPa]\n{}",
             rows.collect::<String>()
         );
-        assert!(answer(&text).has_intervals(), "{seed}");
+        assert!(answer(parsed(&text)).has_intervals(), "{seed}");
     }
 }
 
@@ -226,7 +200,8 @@ fn a_machine_s_unit_of_length_does_not_change_the_verdict() {
                 "{head}\nExtension [{unit}],Load [N]\n{}",
                 rows.collect::<String>()
             );
-            assert_eq!(answer(&text).has_intervals(), noisy, "{unit} {noise}");
+            let answer = answer(parsed(&text));
+            assert_eq!(answer.has_intervals(), noisy, "{unit} {noise}");
         }
     }
 }
@@ -238,10 +213,7 @@ fn data_that_were_rounded_are_called_so() {
     for (strain, stress) in [(10, 3), (3, 10), (2, 3)] {
         let rows = neo_hooke(&stretches, 0.0, 1).into_iter();
         let rows = rows.map(|(l, s)| format!("{l:.strain$},{s:.stress$}\n"));
-        let text = format!(
-            "# test: uniaxial\nstretch [-],nominal_stress [MPa]\n{}",
-            rows.collect::<String>()
-        );
-        assert_eq!(answer(&text), Answer::Rounding, "{strain} {stress}");
+        let data = uniaxial(&rows.collect::<String>());
+        assert_eq!(answer(data), Answer::Rounding, "{strain} {stress}");
     }
 }

@@ -173,29 +173,24 @@ fn specimens_differ(factors: &[f64], has_intervals: bool) -> String {
 
 #[cfg(test)]
 mod tests {
-    use crate::calibration::{FitSettings, TestData, Weighting, fit};
-    use crate::document::Statements;
-    use crate::material::registry::Law;
+    use crate::calibration::tests::helpers::{fit_with, fitted, parsed, uniaxial, weighted};
+    use crate::calibration::{TestData, Weighting};
     use crate::statistics::normal_numbers;
 
     /// Tension of a neo-Hookean strip with noise of a size for each stress.
     fn tension(c10: f64, seed: u64, noise: fn(f64) -> f64) -> TestData {
         let mut normal = normal_numbers(seed);
-        let mut text = "# test: uniaxial\nstretch [-],nominal_stress [MPa]\n".to_owned();
+        let mut rows = String::new();
         for row in 0..80 {
             let stretch = 1.02 + 0.0125 * f64::from(row);
             let stress = 2.0 * c10 * (stretch - stretch.powi(-2));
-            text += &format!("{stretch},{:.7}\n", stress + noise(stress) * normal());
+            rows += &format!("{stretch},{:.7}\n", stress + noise(stress) * normal());
         }
-        TestData::parse("a.csv", &text, &Statements::default()).unwrap()
+        uniaxial(&rows)
     }
 
     fn warned(tests: &[TestData], weighting: Weighting, words: &str) -> bool {
-        let settings = FitSettings {
-            weighting,
-            ..FitSettings::default()
-        };
-        let result = fit(Law::named("neo-hooke").unwrap(), tests, &settings).unwrap();
+        let result = fit_with("neo-hooke", tests, &weighted(weighting)).unwrap();
         assert!(result.quality.has_intervals());
         result
             .quality
@@ -234,8 +229,7 @@ mod tests {
             ..tension(*c10, seed, |_| 0.003)
         });
         let tests: Vec<TestData> = tests.collect();
-        let law = Law::named("neo-hooke").unwrap();
-        let result = fit(law, &tests, &FitSettings::default()).unwrap();
+        let result = fitted("neo-hooke", &tests);
         assert!(result.quality.has_intervals());
         result.quality.warnings.join("; ")
     }
@@ -298,16 +292,9 @@ mod tests {
             let head = format!(
                 "# test: biaxial\n{stated}stretch_1 [-],stretch_2 [-],nominal_stress_1 [MPa],nominal_stress_2 [MPa]\n"
             );
-            let read = |rows: &String| {
-                TestData::parse("a.csv", &format!("{head}{rows}"), &Statements::default()).unwrap()
-            };
+            let read = |rows: &String| parsed(&format!("{head}{rows}"));
             let tests: Vec<TestData> = files.iter().map(read).collect();
-            let result = fit(
-                Law::named("fung-demiray").unwrap(),
-                &tests,
-                &FitSettings::default(),
-            )
-            .unwrap();
+            let result = fitted("fung-demiray", &tests);
             let mut warnings = result.quality.warnings.into_iter();
             warnings.find(|one| one.contains("3 protocols")).unwrap()
         };
