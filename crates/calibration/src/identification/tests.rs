@@ -15,6 +15,14 @@ fn settings(forms: [Form; 2]) -> IdentificationSettings {
     }
 }
 
+fn identified(recording: &Recording) -> Identification {
+    identified_with(recording, IdentificationSettings::default())
+}
+
+fn identified_with(recording: &Recording, settings: IdentificationSettings) -> Identification {
+    identify(recording, settings, &|_| ()).unwrap()
+}
+
 /// All trials are in `gelbench validate spring-identification`.
 #[test]
 fn known_functions_lie_within_their_bands_in_nine_of_ten_trials() {
@@ -23,12 +31,7 @@ fn known_functions_lie_within_their_bands_in_nine_of_ten_trials() {
             seed: *seed,
             ..Sample::default()
         };
-        let actual = identify(
-            &sample.recording(),
-            IdentificationSettings::default(),
-            &|_| (),
-        )
-        .unwrap();
+        let actual = identified(&sample.recording());
         let within = |function: &Function, x: f64, truth: f64| {
             let [low, high] = function.band(x);
             (low..=high).contains(&truth)
@@ -45,7 +48,7 @@ fn known_functions_lie_within_their_bands_in_nine_of_ten_trials() {
 #[test]
 fn without_noise_the_functions_are_found_to_the_accuracy_of_their_splines() {
     let exact = Sample::default().exact();
-    let actual = identify(&exact, IdentificationSettings::default(), &|_| ()).unwrap();
+    let actual = identified(&exact);
     for x in PLACES {
         let [k, d] = [&actual.stiffness, &actual.damping].map(|function| function.at(x).value);
         assert!((k / Sample::stiffness(x) - 1.0).abs() < 5e-4, "{x}: {k}");
@@ -72,12 +75,7 @@ fn machine(stiffness: impl Fn(f64) -> f64, damping: impl Fn(f64) -> f64) -> Reco
 #[test]
 fn constants_and_polynomials_come_back_with_their_coefficients() {
     let recording = machine(|x| 0.2 + 0.01 * x, |_| 0.05);
-    let actual = identify(
-        &recording,
-        settings([Form::Polynomial(1), Form::Constant]),
-        &|_| (),
-    )
-    .unwrap();
+    let actual = identified_with(&recording, settings([Form::Polynomial(1), Form::Constant]));
     let [k, d] = [&actual.stiffness, &actual.damping].map(Function::powers);
     for (estimate, truth) in [(k[0], 0.2), (k[1], 0.01), (d[0], 0.05)] {
         assert!((estimate.value / truth - 1.0).abs() < 1e-5, "{estimate:?}");
@@ -108,11 +106,11 @@ fn constants_and_polynomials_come_back_with_their_coefficients() {
 fn a_dashpot_may_depend_on_the_rate() {
     let damping = |v: f64| 0.05 / (1.0 + (v / 10.0).powi(2));
     let recording = machine(|_| 0.3, damping);
-    let actual = IdentificationSettings {
+    let by_rate = IdentificationSettings {
         argument: Argument::Rate,
         ..settings([Form::Constant, Form::SPLINE])
     };
-    let actual = identify(&recording, actual, &|_| ()).unwrap();
+    let actual = identified_with(&recording, by_rate);
     for v in [-10.0, -5.0, 3.0, 9.0] {
         let d = actual.damping.at(v).value;
         assert!((d / damping(v) - 1.0).abs() < 5e-3, "{v}: {d}");
@@ -132,7 +130,7 @@ fn a_shape_is_kept_against_the_data() {
             shapes: [Shape::Free, shape],
             ..IdentificationSettings::default()
         };
-        let actual = identify(&recording, wanted, &|_| ()).unwrap();
+        let actual = identified_with(&recording, wanted);
         let positions = actual.damping.positions(200);
         let values: Vec<f64> = positions
             .iter()
@@ -161,18 +159,13 @@ fn what_does_not_fit_or_is_not_determined_is_told() {
         mass: 3e-4,
         ..sample.recording()
     };
-    let actual = identify(&wrong, IdentificationSettings::default(), &|_| ()).unwrap();
+    let actual = identified(&wrong);
     let reasons = actual.verdict.reasons.join("; ");
     assert!(
         !actual.is_explained() && reasons.contains("times the noise"),
         "{reasons}"
     );
-    let right = identify(
-        &sample.recording(),
-        IdentificationSettings::default(),
-        &|_| (),
-    )
-    .unwrap();
+    let right = identified(&sample.recording());
     assert!(
         right.warnings.is_empty() && right.verdict.is_sound(),
         "{:?}",
@@ -225,7 +218,7 @@ fn a_recording_of_two_thirds_of_the_instants_has_the_functions_of_the_whole_one(
             force: of(&complete.force),
             ..complete.clone()
         };
-        let actual = identify(&part, IdentificationSettings::default(), &|_| ()).unwrap();
+        let actual = identified(&part);
         assert!(actual.misfit < 1.2, "{seed}: {}", actual.misfit);
         for x in PLACES {
             let k = actual.stiffness.at(x).value;

@@ -47,7 +47,7 @@ fn what_bends_the_functions_and_hides_from_the_misfit_is_named() {
     for (words, size, change) in cases {
         let mut recording = sound.clone();
         change(&mut recording);
-        let actual = identify(&recording, IdentificationSettings::default(), &|_| ()).unwrap();
+        let actual = identified(&recording);
         let message = asked_for(&actual).unwrap_or_default();
         // Zeros of force and extension are much the same: that of the other may be named first.
         let statement = message
@@ -116,12 +116,12 @@ fn what_smooth_functions_go_past_is_named() {
     ];
     for (words, stiffness, damping) in cases {
         let recording = swinging(stiffness, damping);
-        let actual = identify(&recording, IdentificationSettings::default(), &|_| ()).unwrap();
+        let actual = identified(&recording);
         let message = asked_for(&actual).unwrap_or_default();
         assert!(message.contains(words), "{words}: {message}");
     }
     let sound = swinging(constant_k, constant_d);
-    let actual = identify(&sound, IdentificationSettings::default(), &|_| ()).unwrap();
+    let actual = identified(&sound);
     assert_eq!(asked_for(&actual), None);
 }
 
@@ -137,7 +137,7 @@ fn asked_for(actual: &Identification) -> Option<String> {
 fn what_is_not_explained_has_no_intervals() {
     let mut recording = Sample::default().recording();
     recording.mass *= 1.15;
-    let actual = identify(&recording, IdentificationSettings::default(), &|_| ()).unwrap();
+    let actual = identified(&recording);
     assert!(
         actual.misfit < 2.0 && !actual.is_explained(),
         "{}",
@@ -160,7 +160,7 @@ fn a_drift_of_the_extension_is_named_before_one_of_the_force() {
     for (i, x) in recording.extension.iter_mut().enumerate() {
         *x += 1.3 * i as f64 / count;
     }
-    let actual = identify(&recording, IdentificationSettings::default(), &|_| ()).unwrap();
+    let actual = identified(&recording);
     let asked = asked_for(&actual).unwrap_or_default();
     assert!(
         asked.starts_with("an extension that drifts by 1."),
@@ -177,11 +177,11 @@ fn a_recording_without_noise_is_explained() {
         instants: 1001,
         ..Sample::default()
     };
-    let actual = identify(&sample.exact(), IdentificationSettings::default(), &|_| ()).unwrap();
+    let actual = identified(&sample.exact());
     assert!(actual.verdict.is_sound(), "{:?}", actual.verdict);
     let mut wrong = sample.exact();
     wrong.mass *= 1.01;
-    let actual = identify(&wrong, IdentificationSettings::default(), &|_| ()).unwrap();
+    let actual = identified(&wrong);
     let asked = asked_for(&actual).unwrap_or_default();
     assert!(
         asked.starts_with("a mass that is smaller by 2.0"),
@@ -198,7 +198,7 @@ fn sound_recordings_are_suspected_of_nothing() {
             ..Sample::default()
         };
         for forms in [[Form::SPLINE; 2], [Form::Constant; 2]] {
-            let actual = identify(&sample.recording(), settings(forms), &|_| ()).unwrap();
+            let actual = identified_with(&sample.recording(), settings(forms));
             assert_eq!(asked_for(&actual), None, "{seed} {forms:?}");
         }
     }
@@ -209,7 +209,7 @@ fn sound_recordings_are_suspected_of_nothing() {
 fn a_steady_vibration_is_told() {
     let message = |amplitudes: [f64; 2]| {
         let recording = swinging_by(amplitudes, |x| 0.2 + 0.01 * x, |_| 0.04);
-        let actual = identify(&recording, IdentificationSettings::default(), &|_| ()).unwrap();
+        let actual = identified(&recording);
         let mut doubts = actual.verdict.doubts.iter();
         doubts.any(|doubt| doubt.contains("steady vibration"))
     };
