@@ -23,7 +23,7 @@ use crate::error::Error;
 use crate::statistics::{BSpline, Ends, extremes};
 use band::reach;
 use joint::{Joint, JointEquations, State};
-use penalty::{Exponents, PenalisedFit};
+use penalty::PenalisedFit;
 use smoothing::{SignalSpline, SplineValues, bridged_parts, nearest, smooth, wanted_parts};
 
 mod band;
@@ -192,16 +192,11 @@ fn begin<'a>(
 struct Fit<'a> {
     joint: &'a Joint<'a>,
     state: State,
-    exponents: Exponents,
 }
 
 impl<'a> Fit<'a> {
     fn new(joint: &'a Joint<'a>, state: State) -> Self {
-        Self {
-            joint,
-            state,
-            exponents: [0.0; 2],
-        }
+        Self { joint, state }
     }
 
     fn observations(&self) -> f64 {
@@ -212,9 +207,10 @@ impl<'a> Fit<'a> {
     fn improve(&mut self, report: &dyn Fn(&str)) -> Result<PenalisedFit, Error> {
         let unknown = || undetermined("K(·) and D(·)");
         let functions = &self.joint.functions;
+        let mut exponents = [0.0; 2];
         let fixed = self.joint.with_motion_fixed(&self.state);
         let first = fixed
-            .minimum(&self.state.functions, functions, self.exponents)
+            .minimum(&self.state.functions, functions, exponents)
             .ok_or_else(unknown)?;
         self.state.functions = first.coefficients;
         let mut merit = f64::INFINITY;
@@ -224,11 +220,11 @@ impl<'a> Fit<'a> {
             if step < CHOICES {
                 let counts = [self.observations(), linearised.motion_count() as f64];
                 let from = &self.state.functions;
-                self.exponents = linearised.reduced.choose(from, functions, counts);
+                exponents = linearised.reduced.choose(from, functions, counts);
             }
             let solution = linearised
                 .reduced
-                .minimum(&self.state.functions, functions, self.exponents)
+                .minimum(&self.state.functions, functions, exponents)
                 .ok_or_else(unknown)?;
             let next = self.advance(&linearised, &solution);
             if step >= CHOICES && merit - next < SETTLED * next / self.observations() {

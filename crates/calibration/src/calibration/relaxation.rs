@@ -29,7 +29,7 @@ pub use terms::Terms;
 
 use history::History;
 use prony::Viscous;
-use terms::{SHARES, TIMES, parameters, transformed};
+use terms::{TERM_KEYS, parameters, transformed};
 
 /// Fits a law with a Prony series to some tests together.
 ///
@@ -154,7 +154,7 @@ fn elastic(law: &'static Law, tests: &[TestData], settings: &FitSettings) -> Res
         let hint = "relaxation is fitted to incompressible laws only: choose another law";
         return Err(Error::input(message, hint));
     }
-    nearest(law, tests, &settings.without(&[SHARES, TIMES].concat()))
+    nearest(law, tests, &settings.without(TERM_KEYS.as_flattened()))
 }
 
 /// The shortest interval between rows and the longest duration of a history, in s.
@@ -175,9 +175,10 @@ fn resolved(histories: &[History]) -> Result<[f64; 2], Error> {
 /// The warnings about the series.
 fn series_warnings(fit: &Fit, response: &Viscous, [low, high]: [f64; 2]) -> Vec<String> {
     let mut warnings = Vec::new();
-    let keys = fit.parameters.iter().zip(&fit.quality.at_bound);
-    let held = keys.filter(|(parameter, held)| **held && TIMES.contains(&parameter.key));
-    let held: Vec<&str> = held.map(|(parameter, _)| parameter.key).collect();
+    let is_time = |key: &str| TERM_KEYS.iter().any(|[_, time]| *time == key);
+    let pairs = fit.parameters.iter().zip(&fit.quality.at_bound);
+    let at_bound = pairs.filter_map(|(parameter, held)| held.then_some(parameter.key));
+    let held: Vec<&str> = at_bound.filter(|key| is_time(key)).collect();
     if !held.is_empty() {
         warnings.push(format!(
             "{} at the limit of what the data resolve, {low:.4} to {high:.4} s: faster or slower relaxation cannot be distinguished from it",

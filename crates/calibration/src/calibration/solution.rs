@@ -188,6 +188,9 @@ impl<'a> Solution<Elastic<'a>> {
             ..self.misfit.clone()
         };
         let zeros = misfit.response.zeros().to_vec();
+        if zeros.is_empty() {
+            return None;
+        }
         let is_stretch = |zero: &Zero| matches!(zero, Zero::Stretch { .. });
         let of_record = |zero: &Zero| matches!(zero, Zero::Record { .. });
         let stretches = if zeros.iter().any(is_stretch) {
@@ -207,7 +210,7 @@ impl<'a> Solution<Elastic<'a>> {
         let bounds: Vec<[f64; 2]> = bounds
             .chain(zeros.iter().map(|zero| zero.bounds()))
             .collect();
-        let mut values = start(zeros.first().map(|_| &STRETCHES[0])?);
+        let mut values = start(&STRETCHES[0]);
         if stretches.len() > 1 {
             let rough = improved(&misfit, stretches.iter().map(start).collect(), &bounds);
             values = rough.into_iter().next()?.1;

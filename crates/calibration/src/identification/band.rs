@@ -113,11 +113,11 @@ pub fn reach(functions: &[Function; 2], freedom: f64) -> Option<[f64; 2]> {
     let (mut low, mut high) = (1.0, 40.0);
     for _ in 0..100 {
         let middle = 0.5 * (low + high);
-        *(if missed(middle) > MISSED {
-            &mut low
+        if missed(middle) > MISSED {
+            low = middle;
         } else {
-            &mut high
-        }) = middle;
+            high = middle;
+        }
     }
     Some([point, high])
 }

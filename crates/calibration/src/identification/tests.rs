@@ -136,7 +136,7 @@ fn a_shape_is_kept_against_the_data() {
             .iter()
             .map(|x| actual.damping.at(*x).value)
             .collect();
-        let size = values.iter().fold(0.0, |most: f64, d| most.max(d.abs()));
+        let size = largest(&values);
         let rises = values.windows(2).map(|pair| (pair[1] - pair[0]).max(0.0));
         rises.sum::<f64>() / size
     };

@@ -71,7 +71,7 @@ pub fn notes(result: &Identification, recording: &Recording) -> Vec<String> {
         function
             .positions(PLACES)
             .into_iter()
-            .all(|x| function.at(x).interval[0] <= 0.0 && function.at(x).interval[1] >= 0.0)
+            .all(|x| function.at(x).holds(0.0))
     };
     let functions = result.functions().into_iter();
     let undetermined = functions.filter(|(_, _, function)| is_undetermined(function));

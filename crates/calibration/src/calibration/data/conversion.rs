@@ -65,13 +65,13 @@ impl Conversion {
         let _ = writeln!(text, "{}", self.names(data, times.is_some()).join(","));
         for (index, row) in data.observations.chunks(axes.len()).enumerate() {
             let along = match data.test {
-                Test::Uniaxial | Test::SimpleShear => vec![row[0].strains[row[0].axis]],
+                Test::Uniaxial | Test::SimpleShear => vec![row[0].strain()],
                 Test::Biaxial => row[0].strains.to_vec(),
                 _ => vec![row[0].strains[0]],
             };
             let strains = along.into_iter().map(|x| self.strain.of_nominal(x));
             let stresses = row.iter().map(|one| {
-                let x = one.strains[one.axis];
+                let x = one.strain();
                 let nominal = data.stress_measure.to_nominal(one.stress, x);
                 self.stress.of_nominal(nominal, x) / factor
             });
@@ -137,7 +137,7 @@ mod tests {
             let there = parsed(&away.table(&data).unwrap());
             assert_eq!(there.stress_measure, StressMeasure::Cauchy);
             for (one, other) in data.observations.iter().zip(&there.observations) {
-                let x = one.strains[one.axis];
+                let x = one.strain();
                 assert_eq!(one.axis, other.axis);
                 assert!((other.strains[one.axis] - x).abs() < 1e-15);
                 assert!(

@@ -4,14 +4,14 @@ use super::strain_column::StrainColumn;
 use super::test_data::{Observation, Test};
 use crate::document::{Faulty, Head};
 use crate::error::Diagnostic;
-use crate::statistics::median;
+use crate::statistics::{farthest, median};
 
 /// Positive strains below this share of the largest count as rest in a test of compression.
 const SCATTER: f64 = 1e-3;
 
 /// Refuses data without information, and tests of compression that count pressing as positive.
 pub fn check_signs(head: &Head, observations: &[Observation], test: Test) -> Faulty<()> {
-    let strains = || observations.iter().map(|one| one.strains[one.axis]);
+    let strains = || observations.iter().map(Observation::strain);
     let says_nothing = observations.iter().all(|one| one.stress == 0.0)
         || observations
             .iter()
@@ -21,11 +21,7 @@ pub fn check_signs(head: &Head, observations: &[Observation], test: Test) -> Fau
         return Err(head.fault(0..0, "all strains or all stresses are zero", hint));
     }
     // A stress acts against the strain of a single driven axis only during recoil; of two axes, the second may be held back.
-    let work = || {
-        observations
-            .iter()
-            .map(|one| one.strains[one.axis] * one.stress)
-    };
+    let work = || observations.iter().map(|one| one.strain() * one.stress);
     let against = !work().any(|work| work > 0.0) && work().any(|work| work < 0.0);
     if against && test != Test::Biaxial {
         let message = "the stresses have the sign that is opposite to the strains";
@@ -53,14 +49,8 @@ pub fn stress_at_rest(head: &Head, observations: &[Observation]) -> Option<Diagn
     const NOTHING: f64 = 0.005;
     /// A strain below this share of the largest counts as zero.
     const AT_REST: f64 = 1e-3;
-    let largest = |value: fn(&Observation) -> f64| {
-        let values = observations.iter().map(|one| value(one).abs());
-        values.fold(0.0, f64::max)
-    };
-    let (strain, stress) = (
-        largest(|one| one.strains[one.axis]),
-        largest(|one| one.stress),
-    );
+    let strain = farthest(observations.iter().map(Observation::strain)).abs();
+    let stress = Observation::largest_stress(observations);
     let first = observations.first()?;
     let axis = |one: &&Observation| one.axis == first.axis;
     let rows: Vec<f64> = observations
@@ -104,8 +94,7 @@ pub fn implausible(
         StrainColumn::Strain(_) | StrainColumn::GreenLagrange => "strains",
     };
     let name = &head.table.source.name;
-    let strains = observations.iter().flat_map(|one| one.strains);
-    let largest = strains.fold(0.0, |most: f64, x| most.max(x.abs()));
+    let largest = farthest(observations.iter().flat_map(|one| one.strains)).abs();
     let (message, hint) = if largest > MOST {
         (
             format!("{name}: the {about} reach λ = {:.4}", 1.0 + largest),
@@ -126,14 +115,11 @@ pub fn implausible(
 
 /// Whether the smallest strain is 1 within a tenth, with less than a twentieth of the largest stress.
 fn begin_at_one(observations: &[Observation]) -> bool {
-    let strain = |one: &Observation| one.strains[one.axis];
-    let first = observations
-        .iter()
-        .min_by(|a, b| strain(a).total_cmp(&strain(b)));
-    let stresses = observations.iter().map(|one| one.stress.abs());
-    let largest = stresses.fold(0.0, f64::max);
+    let observed = observations.iter();
+    let first = observed.min_by(|a, b| a.strain().total_cmp(&b.strain()));
+    let largest = Observation::largest_stress(observations);
     first.is_some_and(|first| {
-        (0.9..1.1).contains(&strain(first)) && first.stress.abs() < 0.05 * largest
+        (0.9..1.1).contains(&first.strain()) && first.stress.abs() < 0.05 * largest
     })
 }
 

@@ -92,6 +92,11 @@ pub struct Observation {
 }
 
 impl Observation {
+    /// λ − 1 along the axis of the stress.
+    pub fn strain(&self) -> f64 {
+        self.strains[self.axis]
+    }
+
     /// The largest strains of some observations along both axes.
     pub(in crate::calibration) fn farthest_strains(all: &[Self]) -> [f64; 2] {
         [0, 1].map(|axis| farthest(all.iter().map(|one| one.strains[axis])))
@@ -104,8 +109,7 @@ impl Observation {
 
     /// The largest stress of some observations without its sign, in MPa.
     pub(super) fn largest_stress(all: &[Self]) -> f64 {
-        let stresses = all.iter().map(|one| one.stress.abs());
-        stresses.fold(0.0, f64::max)
+        farthest(all.iter().map(|one| one.stress)).abs()
     }
 
     /// The mean of neighbouring observations along one axis.
@@ -230,8 +234,7 @@ impl TestData {
 
     /// The stress of a law at an observation, in the measure of the data, in MPa.
     pub fn stress_of(&self, law: &dyn HyperelasticLaw, observation: &Observation) -> f64 {
-        let axis = observation.axis;
-        let x = observation.strains[axis];
+        let (axis, x) = (observation.axis, observation.strain());
         let nominal = match self.test {
             Test::Uniaxial => {
                 let direction = [[1.0, 0.0], [0.0, 1.0]][axis];
@@ -249,7 +252,7 @@ impl TestData {
         let (gradient, component) = match self.test {
             Test::Uniaxial => {
                 let direction = [[1.0, 0.0], [0.0, 1.0]][axis];
-                let result = law.tension(direction, observation.strains[axis]);
+                let result = law.tension(direction, observation.strain());
                 return [result.energy, result.nominal_stress];
             }
             Test::SimpleShear => (PlaneTensor::new(0.0, first, 0.0, 0.0), 1),

@@ -12,7 +12,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::calibration::least_squares::linear;
-use crate::statistics::{inverse, median};
+use crate::statistics::{farthest, inverse, median};
 
 /// The beginning of a branch ends at this share of its largest stress.
 const BEGINNING: f64 = 0.2;
@@ -102,11 +102,7 @@ impl Beginning {
         let (first, last) = (*strains.first()?, *strains.last()?);
         let direction = (last - first).signum();
         let still = median(stresses.iter().copied().take(BESIDE));
-        let top = stresses.iter().map(|y| y - still);
-        let top = top.fold(
-            0.0,
-            |most: f64, y| if y.abs() > most.abs() { y } else { most },
-        );
+        let top = farthest(stresses.iter().map(|y| y - still));
         let rises = |y: &f64| (y - still) / top > BEGINNING;
         let rows = stresses.iter().position(rises)? + 1;
         if rows < FEWEST || top == 0.0 {
@@ -167,14 +163,12 @@ impl Beginning {
         if at_rest.abs() <= 4.0 * error + NOTHING {
             return Some(Self::Clean);
         }
-        let back = width * at_rest / slope;
-        match at_rest > 0.0 {
-            true if slope > 0.0 && back.abs() < 0.25 * range => Some(Self::Preload {
-                zero: first - back,
-                stress: at_rest * top,
-            }),
-            true => None,
-            false => Some(Self::Offset(at_rest * top)),
+        let (back, stress) = (width * at_rest / slope, at_rest * top);
+        if at_rest > 0.0 {
+            let zero = first - back;
+            (slope > 0.0 && back.abs() < 0.25 * range).then_some(Self::Preload { zero, stress })
+        } else {
+            Some(Self::Offset(stress))
         }
     }
 }

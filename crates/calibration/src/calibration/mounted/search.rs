@@ -58,8 +58,7 @@ impl MountedSheet {
                 };
                 let known = solved.iter().map(|(_, states)| &states[0]);
                 let nearest = known.min_by(|a, b| far(a).total_cmp(&far(b)));
-                let starts = [starts.get(*number), nearest, None];
-                let states = search.first(target, &starts.map(|start| start.cloned()));
+                let states = search.first(target, [starts.get(*number), nearest, None]);
                 let states = states.map_err(|fault| fault_at(target, fault))?;
                 solved.push((*number, states));
             }
@@ -121,16 +120,12 @@ impl<'a> Search<'a> {
     fn first(
         &mut self,
         strains: [f64; 2],
-        starts: &[Option<SheetState>],
+        [first, others @ ..]: [Option<&SheetState>; 3],
     ) -> Result<Vec<SheetState>, SolveFault> {
-        let mut result = self.states(strains, starts[0].as_ref());
-        for start in &starts[1..] {
-            if result.is_ok() {
-                break;
-            }
-            result = self.states(strains, start.as_ref());
-        }
-        result
+        let begin = self.states(strains, first);
+        others.into_iter().fold(begin, |result, start| {
+            result.or_else(|_| self.states(strains, start))
+        })
     }
 
     /// The states of all laws at some strains: those of the others begin at that of the first one.

@@ -166,10 +166,12 @@ impl Search<'_> {
                 [from, to] if from.max(*low) < to.min(*high) => [from.max(*low), to.min(*high)],
                 usual => usual,
             };
-            let drawn = match from > 0.0 {
-                _ if parameter.is_stress() => scale * 0.01_f64.powf(share),
-                true => from * (to / from).powf(share),
-                false => from + (to - from) * share,
+            let drawn = if parameter.is_stress() {
+                scale * 0.01_f64.powf(share)
+            } else if from > 0.0 {
+                from * (to / from).powf(share)
+            } else {
+                from + (to - from) * share
             };
             drawn.clamp(*low, *high)
         };

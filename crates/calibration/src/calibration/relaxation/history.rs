@@ -90,7 +90,7 @@ impl History {
     }
 
     fn new(test: usize, states: Vec<State>, rise: f64) -> Self {
-        let strain = |state: &State| state.observation.strains[state.observation.axis].abs();
+        let strain = |state: &State| state.observation.strain().abs();
         let largest = states.iter().map(strain).fold(0.0, f64::max);
         let begins_stretched = strain(&states[0]) > BEGUN * largest;
         let first = states[0].observation;
@@ -121,7 +121,7 @@ impl History {
     pub fn long_time_stress(&self, data: &TestData, law: &dyn HyperelasticLaw) -> Vec<f64> {
         let stress = |node: &Node| {
             let one = &node.observation;
-            let x = one.strains[one.axis];
+            let x = one.strain();
             let stress = data.stress_of(law, one);
             data.stress_measure.to_nominal(stress, x) / (1.0 + x)
         };
@@ -141,7 +141,7 @@ impl History {
             before = *now;
             if node.measured {
                 let one = &node.observation;
-                let x = one.strains[one.axis];
+                let x = one.strain();
                 let nominal = (1.0 + x) * (now + branches.iter().sum::<f64>());
                 result.push(data.stress_measure.of_nominal(nominal, x));
             }
@@ -167,7 +167,7 @@ fn times(data: &TestData) -> Result<&[f64], Error> {
 /// Goes on to an observation in steps that are fine enough; a sudden one is a single step.
 fn add_steps(nodes: &mut Vec<Node>, to: Observation, elapsed: f64) {
     let from = nodes[nodes.len() - 1].observation;
-    let change = (to.strains[to.axis] - from.strains[to.axis]).abs();
+    let change = (to.strain() - from.strain()).abs();
     let steps = if elapsed > 0.0 {
         (change / FINE).ceil().clamp(1.0, 1000.0)
     } else {
@@ -204,7 +204,7 @@ fn gather(states: Vec<State>) -> Vec<State> {
 
 /// Means over no more than a share of the time since the strain moved by as large a share of its range.
 fn gathered_by(states: &[State], share: f64) -> Vec<State> {
-    let strain = |state: &State| state.observation.strains[state.observation.axis];
+    let strain = |state: &State| state.observation.strain();
     let [low, high] = extremes(states.iter().map(strain));
     let moved = share * (high - low);
     let mut groups: Vec<Vec<State>> = Vec::new();

@@ -14,23 +14,14 @@ pub enum Terms {
     Exactly(usize),
 }
 
-/// Keys of shares, as the card's.
-pub const SHARES: [&str; Terms::MOST] = [
-    "relaxation.1.share",
-    "relaxation.2.share",
-    "relaxation.3.share",
-    "relaxation.4.share",
-    "relaxation.5.share",
-    "relaxation.6.share",
-];
-/// Keys of times, as the card's.
-pub const TIMES: [&str; Terms::MOST] = [
-    "relaxation.1.time",
-    "relaxation.2.time",
-    "relaxation.3.time",
-    "relaxation.4.time",
-    "relaxation.5.time",
-    "relaxation.6.time",
+/// The keys of the share and of the time of each term, as the card's.
+pub const TERM_KEYS: [[&str; 2]; Terms::MOST] = [
+    ["relaxation.1.share", "relaxation.1.time"],
+    ["relaxation.2.share", "relaxation.2.time"],
+    ["relaxation.3.share", "relaxation.3.time"],
+    ["relaxation.4.share", "relaxation.4.time"],
+    ["relaxation.5.share", "relaxation.5.time"],
+    ["relaxation.6.share", "relaxation.6.time"],
 ];
 
 impl Terms {
@@ -57,16 +48,16 @@ impl Terms {
 
 /// The parameters of a law with so many terms.
 pub fn parameters(law: &[Parameter], terms: usize, [low, high]: [f64; 2]) -> Vec<Parameter> {
-    let of_term = |index: usize| {
+    let of_term = |[share, time]: [&'static str; 2]| {
         let share = Parameter {
-            key: SHARES[index],
+            key: share,
             value: f64::NAN,
             dimension: Dimension::Ratio,
             bound: Bound::Within(0.0, MOST_SHARED),
             usual: [0.0, 1.0],
         };
         let time = Parameter {
-            key: TIMES[index],
+            key: time,
             dimension: Dimension::Time,
             bound: Bound::Within(low, high),
             usual: [low, high],
@@ -74,10 +65,8 @@ pub fn parameters(law: &[Parameter], terms: usize, [low, high]: [f64; 2]) -> Vec
         };
         [share, time]
     };
-    law.iter()
-        .cloned()
-        .chain((0..terms).flat_map(of_term))
-        .collect()
+    let of_terms = TERM_KEYS.into_iter().take(terms).flat_map(of_term);
+    law.iter().cloned().chain(of_terms).collect()
 }
 
 /// Limits with times by their logarithms.

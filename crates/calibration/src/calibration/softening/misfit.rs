@@ -116,7 +116,7 @@ impl Response for Softens<'_> {
                 let [energy, nominal] = data.state_of(&*law, one);
                 most = most.max(energy);
                 let [factor, _] = softening.factor(energy, most);
-                let x = one.strains[one.axis];
+                let x = one.strain();
                 data.stress_measure.of_nominal(factor * nominal, x)
             };
             data.observations.iter().map(stress).collect()

@@ -138,9 +138,10 @@ impl Judged {
             // Of the interval: the mean of the covariances is mostly that of improbable noises whose lengths are large.
             let reach = noise.reach();
             // Rounding makes the variance of what the data do not determine a negative one.
-            let standard_error = match error(i).is_finite() {
-                true => noise.half_width(&unit) / reach,
-                false => f64::NAN,
+            let standard_error = if error(i).is_finite() {
+                noise.half_width(&unit) / reach
+            } else {
+                f64::NAN
             };
             estimates[*row] = Estimate::new(values[*row], standard_error, reach);
             for (j, column) in free.iter().enumerate().filter(is_known) {

@@ -9,7 +9,7 @@ use crate::calibration::settings::Weighting;
 use crate::material::HyperelasticLaw;
 use crate::material::curve::Mode;
 use crate::material::stability::{SEARCHED, stable_range};
-use crate::statistics::{CurveNoise, Estimate, extremes};
+use crate::statistics::{CurveNoise, Estimate, extremes, farthest};
 
 /// Whether the interval of an estimate does not hold zero.
 pub fn knows_sign(estimate: &Estimate) -> bool {
@@ -144,10 +144,7 @@ pub fn rounded(tests: &[TestData], law: &dyn HyperelasticLaw, weighting: Weighti
     for test in tests {
         let [strain, stress] = test.rounding;
         for one in &test.observations {
-            let size = one
-                .strains
-                .iter()
-                .fold(0.0, |most: f64, x| most.max(x.abs()));
+            let size = farthest(one.strains).abs();
             let moved = Observation {
                 strains: one.strains.map(|x| x * (1.0 + strain / size.max(strain))),
                 ..*one

@@ -63,12 +63,12 @@ fn uncertain(quality: &Quality, parameters: &[Parameter]) -> Vec<String> {
     for (index, estimate) in quality.estimates.iter().enumerate() {
         let (key, value) = (parameters[index].key, estimate.value);
         if quality.at_bound[index] {
-            let others = match quality.has_intervals() {
-                true if quality.fixed[index] => {
-                    ": the intervals of the others assume that it is exactly there"
-                }
-                true => ": the intervals of the others treat it as free",
-                false => "",
+            let others = if !quality.has_intervals() {
+                ""
+            } else if quality.fixed[index] {
+                ": the intervals of the others assume that it is exactly there"
+            } else {
+                ": the intervals of the others treat it as free"
             };
             warnings.push(format!("{key} = {value:.4e} is at a bound{others}"));
         } else if !quality.held[index] && !knows_sign(estimate) {

@@ -8,7 +8,6 @@ use crate::statistics::normal_numbers;
 fn what_bends_the_functions_and_hides_from_the_misfit_is_named() {
     type Change<'a> = &'a dyn Fn(&mut Recording);
     let sound = Sample::default().recording();
-    let largest = |values: &[f64]| values.iter().fold(0.0_f64, |most, f| most.max(f.abs()));
     let (force, extension) = (largest(&sound.force), largest(&sound.extension));
     let interval = 1e3 * (sound.times[1] - sound.times[0]);
     let count = sound.times.len() as f64;

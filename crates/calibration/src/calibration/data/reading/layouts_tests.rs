@@ -41,10 +41,10 @@ fn table(separator: &str, columns: &[Column], has_names: bool) -> String {
 
 /// Whether every row that was read lies on the specimen's curve.
 pub fn is_right(data: &TestData) -> bool {
-    let on_curve = data.observations.iter().all(|one| {
-        let strain = one.strains[one.axis];
-        (one.stress - stress(strain)).abs() < 1e-6
-    });
+    let on_curve = data
+        .observations
+        .iter()
+        .all(|one| (one.stress - stress(one.strain())).abs() < 1e-6);
     on_curve && data.observations.len() == strains().count()
 }
 
