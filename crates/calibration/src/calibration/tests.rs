@@ -17,7 +17,7 @@ mod uncertainty;
 mod verdict;
 mod weighting;
 
-use helpers::{bounded, fit_with, fitted, law, parsed, uniaxial, weighted};
+use helpers::{assert_parameters, bounded, fit_with, fitted, law, parsed, uniaxial, weighted};
 
 fn data(names: &[&str]) -> Vec<TestData> {
     let read = |name: &&str| {
@@ -185,10 +185,7 @@ fn the_parameters_of_aligned_fibres_are_found_from_two_directions() {
         "# test: equibiaxial\nstretch [-],nominal_stress_1 [MPa],nominal_stress_2 [MPa]\n{rows}"
     );
     let tests = [file(1), file(2), parsed(&text)];
-    let fit = fitted(name, &tests);
-    for (actual, expected) in values(&fit).iter().zip(truth) {
-        assert!((actual / expected - 1.0).abs() < 1e-4, "{:?}", values(&fit));
-    }
+    assert_parameters(&fitted(name, &tests), &truth, 1e-4);
 }
 
 #[test]

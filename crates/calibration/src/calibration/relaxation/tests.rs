@@ -7,7 +7,7 @@ use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 
 use super::*;
-use crate::calibration::tests::helpers::{law, parsed, uniaxial};
+use crate::calibration::tests::helpers::{assert_parameters, law, parsed, uniaxial};
 use crate::calibration::*;
 use crate::material::Card;
 use crate::material::registry::Law;
@@ -185,13 +185,7 @@ fn fitted(tests: &[TestData], terms: Terms) -> Fit {
 fn the_series_of_a_ramp_and_hold_is_found_again_and_its_card_runs() {
     let tests = [ramp_and_hold(0.0, 0)];
     let fit = fitted(&tests, Terms::Exactly(2));
-    for (parameter, truth) in fit.parameters.iter().zip(TRUTH) {
-        assert!(
-            (parameter.value / truth - 1.0).abs() < 1e-5,
-            "{} {truth}",
-            parameter.value
-        );
-    }
+    assert_parameters(&fit, &TRUTH, 1e-5);
     let text = card_text(&fit, &tests, &Provenance::default());
     let card = Card::parse("x", "x.toml", &text).unwrap();
     assert_eq!(card.viscosity, fit.relaxed.as_ref().unwrap().material);
@@ -339,12 +333,5 @@ fn many_rows_are_gathered() {
     let gathered = &History::all(&tests, true).unwrap()[0];
     assert!(gathered.states.len() <= 1500, "{}", gathered.states.len());
     assert!((gathered.states.iter().map(|state| state.count).sum::<f64>() - 2e4).abs() < 1e-6);
-    let fit = fitted(&tests, Terms::Exactly(1));
-    for (parameter, truth) in fit.parameters.iter().zip([1.0, 0.3, 2.0]) {
-        assert!(
-            (parameter.value / truth - 1.0).abs() < 1e-3,
-            "{} {truth}",
-            parameter.value
-        );
-    }
+    assert_parameters(&fitted(&tests, Terms::Exactly(1)), &[1.0, 0.3, 2.0], 1e-3);
 }

@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use super::*;
+use crate::calibration::tests::helpers::assert_parameters;
 use crate::calibration::*;
 use crate::document::Statements;
 use crate::material::registry::Law;
@@ -76,10 +77,7 @@ fn exact_cycles_give_the_parameters_back() {
         vec![record("uniaxial", 0.0, 0), record("equibiaxial", 0.0, 0)],
     ] {
         let fit = fitted(&tests);
-        for (parameter, expected) in fit.parameters.iter().zip(VALUES) {
-            let error = (parameter.value / expected - 1.0).abs();
-            assert!(error < 1e-6, "{} {error:.1e}", parameter.key);
-        }
+        assert_parameters(&fit, &VALUES, 1e-6);
         let cycles = &fit.softened.as_ref().unwrap().cycles;
         assert_eq!(cycles.len(), 4 * tests.len());
         for cycle in cycles {
@@ -152,12 +150,7 @@ fn softening_can_be_fitted_on_top_of_a_card_and_written_there() {
     let tests = [record("uniaxial", 0.002, 3)];
     let fit = fit_softening(Base::Card(&card), &tests, &FitSettings::default()).unwrap();
     assert_eq!(fit.parameters.len(), 3);
-    for (parameter, expected) in fit.parameters.iter().zip(&VALUES[1..]) {
-        assert!(
-            (parameter.value / expected - 1.0).abs() < 0.3,
-            "{parameter:?}"
-        );
-    }
+    assert_parameters(&fit, &VALUES[1..], 0.3);
     let provenance = Provenance {
         files: vec!["cycles.csv".into()],
         base_card: Some("own.toml".into()),
@@ -194,10 +187,7 @@ fn an_earlier_stretch_that_is_stated_gives_the_parameters_back() {
         let mut data = record_after(0.6, test, 0.0, 0);
         data.preconditioned = Some(0.6);
         let fit = fitted(std::slice::from_ref(&data));
-        for (parameter, expected) in fit.parameters.iter().zip(VALUES) {
-            let error = (parameter.value / expected - 1.0).abs();
-            assert!(error < 1e-6, "{test}: {} {error:.1e}", parameter.key);
-        }
+        assert_parameters(&fit, &VALUES, 1e-6);
         let cycles = &fit.softened.as_ref().unwrap().cycles;
         assert!(cycles[0].dissipated == 0.0 && cycles[1].dissipated > 0.0);
     }

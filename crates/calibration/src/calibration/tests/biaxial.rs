@@ -131,10 +131,7 @@ fn shear_determines_the_angle_with_its_sign_and_the_shear_stiffness() {
         ),
     ];
     let actual = fitted("fung", &data);
-    for (parameter, truth) in actual.parameters.iter().zip(truth) {
-        let off = (parameter.value / truth - 1.0).abs();
-        assert!(off < 1e-3, "{} {}", parameter.key, parameter.value);
-    }
+    assert_parameters(&actual, &truth, 1e-3);
     assert!(!actual.quality.held.contains(&true));
 }
 

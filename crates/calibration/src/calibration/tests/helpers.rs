@@ -57,3 +57,13 @@ pub fn fit_with(law: &str, tests: &[TestData], settings: &FitSettings) -> Result
 pub fn fitted(law: &str, tests: &[TestData]) -> Fit {
     fit_with(law, tests, &FitSettings::default()).unwrap()
 }
+
+/// Asserts that the parameters of a fit have some values, but for a relative deviation.
+#[track_caller]
+pub fn assert_parameters(fit: &Fit, expected: &[f64], tolerance: f64) {
+    for (parameter, expected) in fit.parameters.iter().zip(expected) {
+        let (key, value) = (parameter.key, parameter.value);
+        let deviation = (value / expected - 1.0).abs();
+        assert!(deviation < tolerance, "{key} = {value} is not {expected}");
+    }
+}

@@ -1,11 +1,11 @@
 //! The same specimen in the dialects of testing machines: units in names, in brackets, or in a line of their own; columns in any order; force,
 //! stress or both; one axis or two.
 
-use super::layouts_tests::{SPECIMEN, is_right, stress};
+use super::layouts_tests::{SPECIMEN, Value, is_right, rows, stress};
 use super::tests::read;
 
 /// A quantity with its unit, and its values by the strain.
-type Quantity = (&'static str, &'static str, fn(f64) -> f64);
+type Quantity = (&'static str, &'static str, Value);
 
 /// The columns of a table, and what is stated of it.
 type Case<'a> = (&'a [Quantity], &'a [(&'a str, &'a str)]);
@@ -23,29 +23,18 @@ const DIALECTS: [Dialect; 7] = [
     |name, _| name.to_owned(),
 ];
 
-/// A table of some columns; the last dialect writes its units in a second line, and a separator of `;` comes with decimal commas.
+/// A table of some columns; the last dialect writes its units in a second line.
 fn table(columns: &[Quantity], dialect: usize, separator: &str) -> String {
     let names = columns
         .iter()
         .map(|(name, unit, _)| DIALECTS[dialect](name, unit));
     let units = columns.iter().map(|(_, unit, _)| format!("({unit})"));
-    let mut lines = vec![names.collect::<Vec<_>>().join(separator)];
+    let mut text = names.collect::<Vec<_>>().join(separator) + "\n";
     if dialect + 1 == DIALECTS.len() {
-        lines.push(units.collect::<Vec<_>>().join(separator));
+        text += &(units.collect::<Vec<_>>().join(separator) + "\n");
     }
-    for row in 0..40 {
-        let strain = 0.02 * f64::from(row);
-        let fields = columns
-            .iter()
-            .map(|(.., value)| format!("{:.9}", value(strain)));
-        let fields = fields.collect::<Vec<_>>().join(separator);
-        lines.push(if separator == ";" {
-            fields.replace('.', ",")
-        } else {
-            fields
-        });
-    }
-    lines.join("\n") + "\n"
+    let values: Vec<Value> = columns.iter().map(|(.., value)| *value).collect();
+    text + &rows(separator, &values)
 }
 
 const TIME: Quantity = ("Time", "s", |x| 50.0 * x);

@@ -14,29 +14,35 @@ fn strains() -> impl Iterator<Item = f64> {
     (0..40).map(|row| 0.02 * f64::from(row))
 }
 
-/// The name of a column, and its values as a function of the strain.
-type Column = (&'static str, fn(f64) -> f64);
+/// The value of a column as a function of the strain.
+pub type Value = fn(f64) -> f64;
+
+/// The name of a column, and its values.
+type Column = (&'static str, Value);
 
 /// A table of named columns with values by the strain, or of columns without names.
 fn table(separator: &str, columns: &[Column], has_names: bool) -> String {
-    let line = |fields: Vec<String>| fields.join(separator) + "\n";
-    let names = line(columns.iter().map(|(name, _)| (*name).to_owned()).collect());
-    let rows = strains().map(|strain| {
-        let fields = columns
-            .iter()
-            .map(|(_, value)| format!("{:.9}", value(strain)));
-        let comma = separator == ";";
-        let written = fields.map(|field| {
-            if comma {
-                field.replace('.', ",")
-            } else {
-                field
-            }
-        });
-        line(written.collect())
-    });
-    let names = Some(names).filter(|_| has_names);
-    names.into_iter().chain(rows).collect()
+    let (names, values): (Vec<&str>, Vec<Value>) = columns.iter().copied().unzip();
+    let rows = rows(separator, &values);
+    if has_names {
+        names.join(separator) + "\n" + &rows
+    } else {
+        rows
+    }
+}
+
+/// The rows of a table with values by the strain; a separator of `;` comes with decimal commas.
+pub fn rows(separator: &str, values: &[Value]) -> String {
+    let row = |strain: f64| {
+        let fields = values.iter().map(|value| format!("{:.9}", value(strain)));
+        let row = fields.collect::<Vec<_>>().join(separator) + "\n";
+        if separator == ";" {
+            row.replace('.', ",")
+        } else {
+            row
+        }
+    };
+    strains().map(row).collect()
 }
 
 /// Whether every row that was read lies on the specimen's curve.
