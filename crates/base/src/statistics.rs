@@ -1,4 +1,4 @@
-//! Statistics, each formula in one place: quantiles and tail probabilities, estimates with their intervals, robust measures of
+//! Statistics, each formula written once: quantiles and tail probabilities, estimates with their intervals, robust measures of
 //! scale, the inverse of normal matrices, B-splines, noise that correlates with distance or along curves.
 
 use nalgebra::{Cholesky, DMatrix, Dyn};
@@ -43,7 +43,7 @@ pub fn extremes(values: impl IntoIterator<Item = f64>) -> [f64; 2] {
     })
 }
 
-/// The value that is farthest from zero, with its sign; zero where there are none. NaN does not count.
+/// The value of the largest magnitude, with its sign; zero where there are none. NaN is ignored.
 pub fn farthest(values: impl IntoIterator<Item = f64>) -> f64 {
     let farther = |most: f64, value: f64| {
         if value.abs() > most.abs() {
@@ -155,7 +155,7 @@ pub fn chi_squared_limit(freedom: f64, probability: f64) -> f64 {
 }
 
 /// Cochran's Q of values with their variances, Σ (p − p̄)²/s² about their weighted mean p̄: χ² with one degree of freedom fewer than
-/// values where all are the same but for their errors.
+/// values where all are equal except for their errors.
 pub fn cochran(values: &[[f64; 2]]) -> f64 {
     let weight: f64 = values.iter().map(|[_, variance]| 1.0 / variance).sum();
     let mean = values
@@ -209,8 +209,8 @@ pub fn robust_deviation(lengths: impl IntoIterator<Item = f64>) -> f64 {
     (median(squares) / (2.0 * std::f64::consts::LN_2)).sqrt()
 }
 
-/// The inverse of a positive definite matrix, scaled to a unit diagonal on the way; `None` where a pivot of the scaled
-/// matrix is below `least`.
+/// The inverse of a positive definite matrix, computed with the matrix scaled to a unit diagonal; `None` where a pivot of the
+/// scaled matrix is below `least`.
 pub fn inverse(matrix: &DMatrix<f64>, least: f64) -> Option<DMatrix<f64>> {
     let scales = matrix.diagonal().map(|entry| entry.sqrt().recip());
     if scales.iter().any(|scale| !scale.is_finite()) {

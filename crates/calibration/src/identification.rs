@@ -8,7 +8,7 @@
 //! Both signals are data of one motion: a spline of degree 5 over time with exact derivatives, and with as many parts
 //! as generalised cross-validation asks for in either signal. No noisy signal is differentiated or put into a
 //! regressor, so that noise causes no bias of first order; a regression of f̃ on derivatives of x̃ would
-//! underestimate K and D. The residuals of each signal's own spline give its noise s_x, s_f.
+//! underestimate K and D. The residuals of a spline fitted to each signal alone give its noise s_x, s_f.
 //!
 //! K(·) and D(·) are constants, polynomials, or cubic B-splines with a penalty on the squares of third differences of their coefficients.
 //! The weights of the penalty are a tenth of those that minimise generalised cross-validation, so that the intervals are valid; splines may
@@ -99,7 +99,7 @@ pub fn identify(
         .ok_or_else(|| undetermined("K(·) and D(·)"))
 }
 
-/// A misfit beyond this, where 1 is noise, may be a wrong minimum.
+/// A misfit above this may be that of a wrong minimum; 1 is noise.
 const POOR: f64 = 2.0;
 
 /// The fit from the recorded motion. Where it does not converge, or ends far from the data, also from the motion that belongs to polynomials:

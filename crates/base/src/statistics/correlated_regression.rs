@@ -5,7 +5,7 @@
 //! −2 ln L = n ln τ² + 2 ln det R₁ + ln det M + (zᵀR⁻¹z)/τ² − gᵀM⁻¹g,   M = AᵀR⁻¹A/τ² + S,   g = AᵀR⁻¹z/τ² + g₀
 //! ```
 //!
-//! R₁ is that of one component of n/2 places. The likelihood thereby restores the part of the noise that the fit has removed.
+//! R₁ is the correlation of one component at n/2 positions. The determinant of M accounts for the part of the noise that the fit has removed.
 //!
 //! # References
 //! D. A. Harville, J. Am. Stat. Assoc. 72, 320 (1977), doi:10.1080/01621459.1977.10480998
@@ -18,9 +18,9 @@ use rayon::prelude::*;
 use super::correlation::{Correlation, Decay, Sites, Whitening};
 use super::{chi_squared_limit, inverse_of, normal_equations};
 
-/// A regression whose rows would have variance one if they were white; two rows for each place.
+/// A regression with two rows, one of each component, for each position; their variance is one where they are white.
 pub struct CorrelatedRegression<'a> {
-    /// The places of the rows.
+    /// The positions of the rows.
     pub sites: &'a Sites,
     /// A.
     pub design: &'a DMatrix<f64>,
@@ -43,7 +43,7 @@ pub struct CorrelatedNoise {
     pub evidence: f64,
 }
 
-/// A regression with its rows made white.
+/// A regression whose rows were whitened.
 pub struct WhiteRegression {
     normal: DMatrix<f64>,
     right: DVector<f64>,
@@ -52,16 +52,16 @@ pub struct WhiteRegression {
     log_determinant: f64,
 }
 
-/// Its likelihood.
+/// The likelihood of a regression at its best variance.
 #[derive(Clone, Copy)]
 struct Score {
     /// −2 ln L.
-    surprise: f64,
+    deviance: f64,
     variance: f64,
 }
 
 impl WhiteRegression {
-    /// The regression of rows that are white, or are made white.
+    /// The regression of rows that are white, or are whitened.
     pub fn new(
         design: &DMatrix<f64>,
         residual: &DVector<f64>,
@@ -90,8 +90,8 @@ impl WhiteRegression {
         }
     }
 
-    /// zᵀR⁻¹z of the residuals at the best δ, and the number of parameters that were fitted; `None` where δ is not determined.
-    pub fn left(
+    /// zᵀR⁻¹z of the residuals at the best δ, and the effective number of fitted parameters; `None` where δ is not determined.
+    pub fn residual_square(
         &self,
         held: &DMatrix<f64>,
         slope: &DVector<f64>,
@@ -143,13 +143,13 @@ impl WhiteRegression {
         const ITERATIONS: usize = 4;
         let mut variance = 1.0;
         for _ in 0..ITERATIONS {
-            let (square, effective) = self.left(held, slope, variance)?;
+            let (square, effective) = self.residual_square(held, slope, variance)?;
             variance = (square / (self.rows - effective).max(1.0)).max(f64::MIN_POSITIVE);
         }
         let (rest, ..) = self.solve(held, slope, variance)?;
-        let surprise =
+        let deviance =
             self.rows * variance.ln() + 2.0 * self.log_determinant + rest + self.square / variance;
-        Some(Score { surprise, variance })
+        Some(Score { deviance, variance })
     }
 }
 
@@ -165,14 +165,14 @@ impl CorrelatedRegression<'_> {
         let (Some(white), Some(tried)) = (white, self.search(spacing, longest)) else {
             return Vec::new();
         };
-        let least = tried[0].1.surprise;
+        let least = tried[0].1.deviance;
         let near = tried
             .into_iter()
-            .filter(|(_, score)| score.surprise - least < chi_squared_limit(2.0, 0.05));
+            .filter(|(_, score)| score.deviance - least < chi_squared_limit(2.0, 0.05));
         near.map(|(correlation, score)| CorrelatedNoise {
             correlation,
             variance: score.variance,
-            evidence: white.surprise - score.surprise,
+            evidence: white.deviance - score.deviance,
         })
         .collect()
     }
@@ -182,7 +182,7 @@ impl CorrelatedRegression<'_> {
         const STEP: f64 = 1.8;
         let lengths = std::iter::successors(Some(0.6 * spacing), |length| Some(STEP * length));
         let lengths: Vec<f64> = lengths.take_while(|length| *length <= longest).collect();
-        // Once, before all threads need it.
+        // Computed here once, before all threads need it.
         self.sites.order();
         let mut tried = self.grid(Decay::Exponential, &lengths);
         let length = tried.iter().min_by(likelier)?.0.length;
@@ -195,7 +195,7 @@ impl CorrelatedRegression<'_> {
         Some(tried)
     }
 
-    /// All of some lengths and shares.
+    /// The scores of these lengths with all shares.
     fn grid(&self, decay: Decay, lengths: &[f64]) -> Vec<(Correlation, Score)> {
         let of = |length: &f64| {
             SHARES.map(|share| Correlation {
@@ -214,10 +214,10 @@ impl CorrelatedRegression<'_> {
         let whitening = Whitening::new(self.sites, &correlation);
         let white = WhiteRegression::new(self.design, self.residual, Some(&whitening));
         let score = white.score(self.held, self.slope)?;
-        score.surprise.is_finite().then_some((correlation, score))
+        score.deviance.is_finite().then_some((correlation, score))
     }
 
-    /// Smaller steps in length and share about the best.
+    /// The scores of smaller steps in length and share about the best.
     fn refined(
         &self,
         mut best: (Correlation, Score),
@@ -250,7 +250,7 @@ impl CorrelatedRegression<'_> {
                 let Some(actual) = self.tried(near) else {
                     continue;
                 };
-                if actual.1.surprise < best.1.surprise {
+                if actual.1.deviance < best.1.deviance {
                     best = actual;
                 }
                 tried.push(actual);
@@ -262,7 +262,7 @@ impl CorrelatedRegression<'_> {
 }
 
 fn likelier(a: &&(Correlation, Score), b: &&(Correlation, Score)) -> Ordering {
-    a.1.surprise.total_cmp(&b.1.surprise)
+    a.1.deviance.total_cmp(&b.1.deviance)
 }
 
 #[cfg(test)]
@@ -270,7 +270,7 @@ mod tests {
     use super::*;
     use crate::statistics::normal_numbers;
 
-    /// Noise of a correlation on a grid of 20 × 12 places, with a plane taken away from each component.
+    /// Noise of a correlation on a grid of 20 × 12 positions, with a fitted plane subtracted from each component.
     fn noise(correlation: Option<Correlation>, seed: u64) -> (Sites, DMatrix<f64>, DVector<f64>) {
         let positions = (0..20).flat_map(|i| (0..12).map(move |j| [f64::from(i), f64::from(j)]));
         let positions: Vec<[f64; 2]> = positions.collect();

@@ -39,7 +39,7 @@ pub struct Correlation {
     pub decay: Decay,
     /// s in 0…1.
     pub share: f64,
-    /// ℓ, in the unit of the places: the distance at which the correlated part has fallen to 1/e.
+    /// ℓ, in the unit of the positions: the distance at which the correlated part has fallen to 1/e.
     pub length: f64,
 }
 
@@ -59,7 +59,7 @@ impl Correlation {
             }
     }
 
-    /// The number of independent values with the same information on a variance as values at these places: n²/Σ ρᵢⱼ².
+    /// The number of independent values with the same information on a variance as values at these positions: n²/Σ ρᵢⱼ².
     pub fn independent(&self, positions: &[[f64; 2]]) -> f64 {
         const MOST: usize = 300;
         let stride = positions.len().div_ceil(MOST).max(1);
@@ -78,10 +78,10 @@ fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
     (a[0] - b[0]).hypot(a[1] - b[1])
 }
 
-/// Places one after the other, each with its nearest ones of those before it.
+/// Positions in an order, each with its nearest ones of those that precede it.
 type Order = Vec<(usize, Vec<usize>)>;
 
-/// Places with an order in which each one follows from few before it.
+/// Positions with an order in which each value is predicted from few preceding ones.
 #[derive(Clone, Debug)]
 pub struct Sites {
     positions: Vec<[f64; 2]>,
@@ -89,7 +89,7 @@ pub struct Sites {
 }
 
 impl Sites {
-    /// These places; their order is made where noise correlates.
+    /// These positions; their order is computed when it is first needed, for noise that correlates.
     pub fn new(positions: Vec<[f64; 2]>) -> Self {
         Self {
             positions,
@@ -101,18 +101,18 @@ impl Sites {
         if let Some(order) = self.order.get() {
             return order;
         }
-        // Made before the cell is locked: a thread that waits for others of its pool may come here again.
+        // Computed before the cell is locked: a thread that waits for others of its pool may enter this function again.
         let order = nearest_before(&self.positions, NEIGHBOURS);
         self.order.get_or_init(|| order)
     }
 
-    /// The places.
+    /// The positions.
     pub fn positions(&self) -> &[[f64; 2]] {
         &self.positions
     }
 }
 
-/// U: a row for each place, in their order.
+/// U: a row for each position, in their order.
 #[derive(Clone, Debug)]
 pub struct Whitening {
     rows: Vec<Row>,
@@ -123,7 +123,7 @@ struct Row {
     position: usize,
     /// 1/√f.
     scale: f64,
-    /// bⱼ of the places before.
+    /// bⱼ of the preceding positions.
     before: Vec<(usize, f64)>,
 }
 
@@ -142,7 +142,7 @@ impl Whitening {
                 DVector::from_iterator(before.len(), before.iter().map(|b| at(*position, *b)));
             let mutual =
                 DMatrix::from_fn(before.len(), before.len(), |i, j| at(before[i], before[j]));
-            // Places twice in the data have the same row: their common part is counted once.
+            // Positions that are twice in the data may make the matrix singular.
             let weights = mutual.cholesky().map(|factor| factor.solve(&covariances));
             let weights = weights.unwrap_or_else(|| DVector::zeros(before.len()));
             let variance = (1.0 - covariances.dot(&weights)).max(1e-6);
@@ -166,7 +166,7 @@ impl Whitening {
         -2.0 * self.rows.iter().map(|row| row.scale.ln()).sum::<f64>()
     }
 
-    /// U a of both components of each place.
+    /// U a of both components of each position.
     pub fn apply(&self, values: &[f64], white: &mut [f64]) {
         for row in &self.rows {
             for axis in [0, 1] {

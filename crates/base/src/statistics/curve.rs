@@ -29,8 +29,8 @@ impl Curve {
         Self { rows, gaps }
     }
 
-    /// Rows in the order of their places.
-    pub fn of_places(mut positions: Vec<(usize, f64)>) -> Self {
+    /// Rows in the order of their positions.
+    pub fn by_position(mut positions: Vec<(usize, f64)>) -> Self {
         positions.sort_by(|a, b| a.1.total_cmp(&b.1));
         let gaps = positions.windows(2).map(|pair| pair[1].1 - pair[0].1);
         let gaps: Vec<f64> = gaps.collect();
@@ -52,7 +52,7 @@ pub struct NoiseAlong<'a> {
     pub correlation: Correlation,
 }
 
-/// A step of the filter: the value of this row, the last prediction's weight, and the scale of what is new.
+/// A step of the Kalman filter at a row: the decay of the state, the gain, and the variance of the innovation.
 struct Step {
     row: usize,
     /// e^(−gap/ℓ) from the row before; 0 at the beginning of a curve.
@@ -121,7 +121,7 @@ impl NoiseAlong<'_> {
         product
     }
 
-    /// Σⱼ e^(−|xᵢ − xⱼ|/ℓ) vⱼ at every row of a curve: the parts from the rows before it and from those after it.
+    /// Σⱼ e^(−|xᵢ − xⱼ|/ℓ) vⱼ at every row of a curve, in one pass forward and one backward.
     fn weighted_sums(&self, curve: &Curve, values: DVectorView<f64>) -> Vec<f64> {
         let mut sums: Vec<f64> = curve.rows.iter().map(|row| values[*row]).collect();
         let mut before = 0.0;
@@ -130,11 +130,11 @@ impl NoiseAlong<'_> {
             before = self.decay(curve.gaps[index - 1]) * (before + value);
             sums[index] += before;
         }
-        let mut behind = 0.0;
+        let mut after = 0.0;
         for index in (1..sums.len()).rev() {
             let value = values[curve.rows[index]];
-            behind = self.decay(curve.gaps[index - 1]) * (behind + value);
-            sums[index - 1] += behind;
+            after = self.decay(curve.gaps[index - 1]) * (after + value);
+            sums[index - 1] += after;
         }
         sums
     }
@@ -171,7 +171,7 @@ mod tests {
         let first = [(0, 0.0), (3, 0.3), (2, 1.7), (6, 2.0), (1, 4.0)];
         let second = [(5, 0.0), (4, 1.0), (7, 1.0)];
         [first.to_vec(), second.to_vec()]
-            .map(Curve::of_places)
+            .map(Curve::by_position)
             .to_vec()
     }
 

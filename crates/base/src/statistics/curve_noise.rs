@@ -73,7 +73,7 @@ pub struct CurveNoise {
     parts: Vec<Part>,
     freedom: f64,
     /// −2 ln L.
-    surprise: f64,
+    deviance: f64,
 }
 
 /// Columns of unit length and different directions, and the matrix that maps values along them back to estimates.
@@ -107,7 +107,7 @@ impl Basis {
     }
 }
 
-/// The triangle of a regression made white, its last column the residual.
+/// The triangle of the QR factorisation of a whitened regression; its last column is the residual.
 struct Triangle {
     triangle: DMatrix<f64>,
     log_determinant: f64,
@@ -124,7 +124,7 @@ impl Triangle {
         }
     }
 
-    /// The remaining square of the residual after so many columns.
+    /// The sum of squares of the residual after the fit of the first `columns` columns.
     fn residual_square(&self, columns: usize) -> f64 {
         let last = self.triangle.ncols() - 1;
         let below = self.triangle.column(last).rows_range(columns..).norm();
@@ -140,7 +140,7 @@ impl Triangle {
         -0.5 * self.log_determinant - design - 0.5 * freedom * self.residual_square(columns).ln()
     }
 
-    /// ln of the likelihood after so many columns.
+    /// ln of the unrestricted likelihood after the fit of the first `columns` columns.
     fn log_unrestricted(&self, columns: usize) -> f64 {
         let rows = self.rows as f64;
         -0.5 * self.log_determinant - 0.5 * rows * (self.residual_square(columns) / rows).ln()
@@ -154,7 +154,7 @@ impl CurveResiduals<'_> {
         let estimates = self.design.ncols();
         let freedom = rows.checked_sub(estimates).filter(|freedom| *freedom > 0)? as f64;
         let basis = Basis::new(self.design)?;
-        let columns = self.of_one_size(&with_last(&basis.columns, self.residual));
+        let columns = self.standardised(&with_last(&basis.columns, self.residual));
         // S times the columns.
         let sized = basis
             .columns
@@ -179,14 +179,14 @@ impl CurveResiduals<'_> {
         let parts: Vec<(Part, [f64; 2])> = self.candidates().par_iter().map(part).collect();
         let weights = shares(parts.iter().map(|(part, [log, _])| part.weight.ln() + log));
         let unrestricted = parts.iter().map(|(part, [_, log])| part.weight.ln() + log);
-        let surprise = -2.0 * log_of_sum(unrestricted.collect());
+        let deviance = -2.0 * log_of_sum(unrestricted.collect());
         let weighed = parts.into_iter().zip(weights);
         let parts = weighed.filter(|(_, weight)| *weight > LEAST);
         let parts = parts.map(|((part, _), weight)| Part { weight, ..part });
         Some(CurveNoise {
             parts: parts.collect(),
             freedom,
-            surprise: surprise + 2.0 * self.sizes.iter().map(|size| size.ln()).sum::<f64>(),
+            deviance: deviance + 2.0 * self.sizes.iter().map(|size| size.ln()).sum::<f64>(),
         })
     }
 
@@ -206,7 +206,7 @@ impl CurveResiduals<'_> {
             return None;
         }
         let freedom = remaining as f64;
-        let columns = self.of_one_size(&with_last(&all, self.residual));
+        let columns = self.standardised(&with_last(&all, self.residual));
         let tried = |candidate: &Candidate| {
             let noise = self.along(candidate);
             let triangle = Triangle::new(noise, &columns);
@@ -222,8 +222,8 @@ impl CurveResiduals<'_> {
         Some(pairs.map(|((tail, _), weight)| tail * weight).sum())
     }
 
-    /// S⁻¹ times some columns: rows whose noise is of one size.
-    fn of_one_size(&self, columns: &DMatrix<f64>) -> DMatrix<f64> {
+    /// S⁻¹ times some columns, so that the noise of all rows has one size.
+    fn standardised(&self, columns: &DMatrix<f64>) -> DMatrix<f64> {
         columns.map_with_location(|row, _, value| value / self.sizes[row])
     }
 
@@ -308,9 +308,9 @@ impl CurveNoise {
         })
     }
 
-    /// −2 ln of the likelihood of the residuals, but for a constant.
-    pub fn surprise(&self) -> f64 {
-        self.surprise
+    /// −2 ln of the likelihood of the residuals, except for a constant.
+    pub fn deviance(&self) -> f64 {
+        self.deviance
     }
 
     /// The number of independent values with the same information on the noise's variance as all of them.
@@ -329,11 +329,11 @@ impl CurveNoise {
     }
 }
 
-/// Shares that have the ratios of these logarithms.
+/// Weights with the sum 1 whose logarithms are these, except for a constant.
 fn shares(logarithms: impl Iterator<Item = f64>) -> Vec<f64> {
     let logarithms: Vec<f64> = logarithms.collect();
-    let complete = log_of_sum(logarithms.clone());
-    let shares = logarithms.iter().map(|one| (one - complete).exp());
+    let total = log_of_sum(logarithms.clone());
+    let shares = logarithms.iter().map(|one| (one - total).exp());
     shares.collect()
 }
 
@@ -350,9 +350,9 @@ fn with_last(columns: &DMatrix<f64>, last: &DVector<f64>) -> DMatrix<f64> {
     all
 }
 
-/// Columns with those of the functions that add a direction to them.
+/// Columns, extended by the parts of the functions that are linearly independent of them.
 fn with_functions(mut columns: DMatrix<f64>, functions: &DMatrix<f64>) -> DMatrix<f64> {
-    /// The least part of a function that must remain beside the columns before it.
+    /// The least part of a function that must be independent of the columns before it.
     const LEAST: f64 = 1e-4;
     for function in functions.column_iter() {
         let mut rest: DVector<f64> = function.into_owned();

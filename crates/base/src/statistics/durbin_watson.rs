@@ -1,7 +1,7 @@
 //! Whether a fit's residuals along curves are white noise: Durbin and Watson's test.
 //!
 //! ```text
-//! d = Σ (rᵢ₊₁ − rᵢ)²/Σ rᵢ²     neighbours of one curve          2: white, 0: all alike, 4: to and fro
+//! d = Σ (rᵢ₊₁ − rᵢ)²/Σ rᵢ²     neighbours of one curve          2: white, 0: all equal, 4: alternating
 //! d/4 ~ Beta with   E[d] = tr(M A)/ν,   Var[d] = 2 (tr(M A M A) − E[d]² ν)/(ν (ν + 2)),   M = 1 − J (JᵀJ)⁻¹Jᵀ
 //! ```
 //!

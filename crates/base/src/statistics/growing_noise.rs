@@ -1,12 +1,11 @@
-//! Noise of curves that has one size in all rows, or grows along with another one.
+//! Noise of curves that has one size in all rows, or a size that grows in proportion to another quantity.
 //!
 //! ```text
 //! sᵢ² = (1 − t) + t oᵢ²                                    o: the other size, Σ oᵢ²/n = 1
 //! dᵢ = (2 rᵢ − rᵢ₋₁ − rᵢ₊₁)/√6,   Var dᵢ = v (4 sᵢ² + sᵢ₋₁² + sᵢ₊₁²)/6,   v of each curve by itself
 //! ```
 //!
-//! The share t is the likeliest one by the differences d of neighbours, which hold what is rough of the residuals: a smooth misfit is
-//! hardly in them, however large it is.
+//! The share t is the likeliest one by the differences d of neighbours: a smooth misfit contributes little to them, however large it is.
 
 use nalgebra::DVector;
 
@@ -15,10 +14,10 @@ const SHARES: [f64; 11] = [
     0.003, 0.01, 0.03, 0.1, 0.3, 0.6, 0.9, 0.97, 0.99, 0.997, 0.999,
 ];
 
-/// 2 ln of a likelihood ratio that one parameter gives by chance in one of a thousand cases.
-const SURE: f64 = 10.8;
+/// 2 ln of a likelihood ratio that one parameter exceeds by chance in one of a thousand cases.
+const SIGNIFICANT: f64 = 10.8;
 
-/// Neighbouring differences share values: so many of them are worth one, 1 + 2 Σ ρ².
+/// Neighbouring differences share values, so that this many of them are worth one independent one: 1 + 2 Σ ρ².
 const OVERLAP: f64 = 1.94;
 
 /// The sizes of the noise of rows; `None` where they may all be the same. Curves are given by their rows in order.
@@ -33,8 +32,8 @@ pub fn sizes(
     let even = likelihood(curves, residual, &of_share(0.0));
     let tried = SHARES.map(|share| (likelihood(curves, residual, &of_share(share)), share));
     let (best, share) = tried.into_iter().max_by(|a, b| a.0.total_cmp(&b.0))?;
-    let is_sure = 2.0 * (best - even) / OVERLAP > SURE;
-    is_sure.then(|| of_share(share).map(f64::sqrt))
+    let is_significant = 2.0 * (best - even) / OVERLAP > SIGNIFICANT;
+    is_significant.then(|| of_share(share).map(f64::sqrt))
 }
 
 /// ln of the likelihood of the differences of neighbours.
@@ -64,7 +63,7 @@ mod tests {
     use super::*;
     use crate::statistics::normal_numbers;
 
-    /// Noise on a wave six times as large, its neighbours correlated by so much, of a size that rises by so many times itself.
+    /// The sizes that are found of noise on a wave six times as large, with a correlation of neighbours and a relative rise of its size.
     fn sizes_of(correlation: f64, rise: f64, seed: u64) -> Option<DVector<f64>> {
         const ROWS: usize = 80;
         let mut normal = normal_numbers(seed);

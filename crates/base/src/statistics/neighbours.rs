@@ -1,4 +1,4 @@
-//! Nearest neighbours among places of a plane.
+//! Nearest neighbours among positions in a plane.
 
 use rand::SeedableRng;
 use rand::seq::SliceRandom;
@@ -9,7 +9,7 @@ use rstar::primitives::GeomWithData;
 
 type Site = GeomWithData<[f64; 2], usize>;
 
-/// The `count` nearest other places of each place, the nearest first; of equally near ones those with the smaller number.
+/// The `count` nearest other positions of each position, the nearest first; of equally near ones those with the smaller number.
 pub fn nearest(positions: &[[f64; 2]], count: usize) -> Vec<Vec<usize>> {
     let tree = tree(positions, 0..positions.len());
     let indices = (0..positions.len()).into_par_iter();
@@ -18,7 +18,7 @@ pub fn nearest(positions: &[[f64; 2]], count: usize) -> Vec<Vec<usize>> {
         .collect()
 }
 
-/// All places in a random but reproducible order, each with the `count` nearest of those before it.
+/// All positions in a random but reproducible order, each with the `count` nearest of those that precede it.
 pub fn nearest_before(positions: &[[f64; 2]], count: usize) -> Vec<(usize, Vec<usize>)> {
     const FIRST: usize = 32;
     let mut order: Vec<usize> = (0..positions.len()).collect();
@@ -28,7 +28,7 @@ pub fn nearest_before(positions: &[[f64; 2]], count: usize) -> Vec<(usize, Vec<u
         ranks[*index] = rank;
     }
     let mut all = Vec::with_capacity(order.len());
-    // Of the places in a tree, at least one half come before one that is asked for.
+    // A tree is built for twice as many positions as precede: at least half of them are admissible neighbours.
     while all.len() < order.len() {
         let end = (2 * all.len()).max(FIRST).min(order.len());
         let tree = tree(positions, order[..end].iter().copied());
@@ -49,7 +49,7 @@ fn tree(positions: &[[f64; 2]], chosen: impl Iterator<Item = usize>) -> RTree<Si
     )
 }
 
-/// The nearest of a tree that are admitted, those that are as far as the last one only by their numbers.
+/// The nearest admitted positions of a tree; of those that are as far as the last one, those with the smallest numbers.
 fn around(
     tree: &RTree<Site>,
     position: [f64; 2],

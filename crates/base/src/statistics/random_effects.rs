@@ -37,7 +37,7 @@ impl RandomEffects {
             let square = values.iter().map(|[y, s]| weight(*s) * (y - mean).powi(2));
             (mean, sum, square.sum::<f64>())
         };
-        // Q falls as τ grows, and is below n − 1 where τ² is the whole scatter.
+        // The weighted sum of squares falls as τ grows, and is below n − 1 where τ² is all of the scatter.
         let [mut low, mut high] = [0.0, 2.0 * scatter];
         for _ in 0..HALVINGS {
             let middle = 0.5 * (low + high);

@@ -1,15 +1,15 @@
 //! B-splines on intervals that are equal, or become shorter towards the ends.
 
-/// The most functions that are not zero at one place: those of degree 5.
+/// The most functions that are not zero at one argument: those of degree 5.
 pub const MOST_FUNCTIONS: usize = 6;
 
-/// Values of the functions that are not zero at a place; entries beyond the degree are zero.
+/// Values of the functions that are not zero at an argument; entries after those of the degree are zero.
 pub type LocalValues = [f64; MOST_FUNCTIONS];
 
-/// The continuation of the knots beyond the range.
+/// The knots outside of the range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ends {
-    /// On equal intervals: the outermost functions reach beyond the range.
+    /// At equal distances: the outermost functions extend outside of the range.
     Uniform,
     /// All at the ends of the range: the first function is one at its beginning, the last one at its end.
     Clamped,
@@ -58,7 +58,7 @@ impl BSpline {
     /// distance; functions may be rough there.
     ///
     /// # Panics
-    /// When its knots continue beyond the range.
+    /// Where its knots extend outside of the range.
     #[must_use]
     pub fn graded(self, graded: [bool; 2]) -> Self {
         assert!(self.ends == Ends::Clamped, "knots beyond the range");
@@ -101,7 +101,7 @@ impl BSpline {
         }
     }
 
-    /// The interval of a place in intervals from the beginning of the range; beyond it the outermost.
+    /// The interval in which s lies, in intervals from the beginning of the range; outside of the range, the outermost one.
     fn interval(&self, s: f64) -> usize {
         let last = self.intervals - 1;
         match self.graded {

@@ -1,19 +1,19 @@
-//! Noise whose size differs from place to place, and between components.
+//! Noise whose size differs between positions, and between components.
 //!
 //! ```text
 //! dᵢ = zᵢ − ¼ Σⱼ zⱼ                       j: the four nearest neighbours of i
-//! ½ ln dx²/dy² = h₀ + h·q(xᵢ) + fᵢ,        Var f = π²/4       one component beside the other
+//! ½ ln dx²/dy² = h₀ + h·q(xᵢ) + fᵢ,        Var f = π²/4       one component relative to the other
 //! ½ ln dx²dy² = g₀ + g·q(xᵢ) + eᵢ,         Var e = π²/4       both together
-//! ln (dx² e⁻ʰ⁰ + dy² eʰ⁰) = g₀ + g·q(xᵢ) + eᵢ,  Var e = π²/6  the same where h is nothing, which tells more
+//! ln (dx² e⁻ʰ⁰ + dy² eʰ⁰) = g₀ + g·q(xᵢ) + eᵢ,  Var e = π²/6  the same where h = 0: more precise
 //! σx, σy ∝ exp(½ (g·q(x) ± (h₀ + h·q(x))))
 //! ```
 //!
-//! q are the linear and quadratic terms of the place, the linear ones alone of few places, and how far a place lies out of the
-//! middle of its eight nearest neighbours along each axis, which is nothing but at the margin. What changes slowly from place to
-//! place, as a misfit or noise that correlates, is hardly left in differences to neighbours, but at the margin, where these lie on one
-//! side: where neighbours correlate nothing is said of the margin. The evidence is χ² = Σ (ŷ − ȳ)²/(v s²), s² = Var or what is left,
-//! beside as many degrees of freedom as q has terms. v = Σᵢⱼ eᵢ eⱼ/Σᵢ eᵢ² over the 24 nearest neighbours j of i is what
-//! neighbours have in common, at least that of white noise.
+//! q are the linear and quadratic terms of the position (the linear ones alone where there are few positions), and the distance along
+//! each axis from the centre of the eight nearest neighbours, which is large at the margin alone. A misfit, or noise that correlates,
+//! changes slowly with the position and almost cancels in differences to neighbours, except at the margin, where neighbours lie on one
+//! side: where neighbours correlate, the terms of the margin are left out. The evidence is χ² = Σ (ŷ − ȳ)²/(v s²) with as many degrees
+//! of freedom as q has terms; s² is Var, or the variance of the residuals where that is larger. v = Σᵢⱼ eᵢ eⱼ/Σᵢ eᵢ² over the 24
+//! nearest neighbours j of i accounts for the correlation of the residuals; it is at least that of white noise.
 //!
 //! # References
 //! A. C. Harvey, Econometrica 44, 461 (1976), doi:10.2307/1913974 (regression of the logarithms);
@@ -25,27 +25,26 @@ use nalgebra::{DMatrix, DVector};
 
 use super::{chi_squared_limit, extremes, nearest, quantile};
 
-/// Fewer places determine nothing, and fewer than the second number no quadratic terms.
+/// The fewest positions for linear terms, and for quadratic ones.
 const FEWEST: [usize; 2] = [30, 60];
 
-/// Neighbours of a place that differences are taken to, and those whose middle it may lie out of.
+/// The number of neighbours in differences, and of those whose centre shows the margin.
 const NEIGHBOURS: usize = 4;
-const AROUND: usize = 8;
+const SURROUNDING: usize = 8;
 
-/// The correlation of neighbours above which the margin is not analysed, and how far a place is out of the middle of its neighbours there.
+/// The correlation of neighbours above which the margin is not analysed, and the least distance from the centre of the neighbours there.
 const CORRELATED: f64 = 0.3;
 const MARGIN: f64 = 0.2;
 
-/// Neighbours that may have noise in common where it correlates.
-const FAR: usize = 24;
+/// The number of neighbours whose noise may correlate.
+const CORRELATED_NEIGHBOURS: usize = 24;
 
 /// The variance of half the sum, and of half the difference, of the logarithms of the squares of two components of white noise; that of
 /// the logarithm of the sum of their squares.
 const VARIANCE: f64 = PI * PI / 4.0;
 const VARIANCE_OF_SUM: f64 = PI * PI / 6.0;
 
-/// What variances of means of neighbouring logarithms grow by: differences of neighbours on a square grid correlate by −0.4, their
-/// logarithms by about 0.10.
+/// v of white noise: differences of neighbours on a square grid correlate by −0.4, their logarithms by about 0.10.
 const COMMON: f64 = 1.45;
 
 /// Probability by chance below which noise is uneven, and the least ratio of the largest deviation to the smallest that matters.
@@ -53,53 +52,53 @@ const LEVEL: f64 = 1e-4;
 const LEAST: f64 = 1.25;
 
 /// The same limits for the components, in standard errors and as a ratio.
-const SURE: f64 = 4.0;
+const SIGNIFICANT: f64 = 4.0;
 const LEAST_OF_COMPONENTS: f64 = 1.1;
 
-/// Terms of a place; where places are few, only the first of them are used.
+/// The number of terms q, and of those that are used where there are few positions.
 const TERMS: usize = 7;
 const FEW_TERMS: usize = 4;
 
 /// The terms of the margin.
-const OUT: [usize; 2] = [2, 3];
+const MARGIN_TERMS: [usize; 2] = [2, 3];
 
-/// The largest logarithm of a ratio of deviations; quadratic terms reach far where places are few.
+/// The largest logarithm of a ratio of deviations: with few positions, quadratic terms would extrapolate too far.
 const MOST: f64 = 2.5;
 
 /// The variation of the size of noise.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unevenness {
-    /// The factor of the standard deviation of each component at each place; their geometric mean is one.
+    /// The factor of the standard deviation of each component at each position; their geometric mean is one.
     pub factors: Vec<[f64; 2]>,
 }
 
 impl Unevenness {
-    /// The unevenness of vectors of noise at some places, `None` at places that are not sound; `None` where all may be of one size.
+    /// The unevenness of vectors of noise at some positions, which are `None` at unsound positions; `None` where all may be of one size.
     pub fn of(positions: &[[f64; 2]], noise: &[Option<[f64; 2]>]) -> Option<Self> {
         let sound = positions.iter().zip(noise);
         let (places, z): (Vec<_>, Vec<_>) = sound
             .filter_map(|(position, z)| Some((*position, (*z)?)))
             .unzip();
         let information = Information::of(&places, &z)?;
-        let apart = information.logarithms(VARIANCE, |x, y| 0.5 * (x / y).ln());
-        let ratios = information.slopes(&apart);
-        let ratio = information.mean_apart(&apart);
+        let log_ratios = information.logarithms(VARIANCE, |x, y| 0.5 * (x / y).ln());
+        let ratios = information.slopes(&log_ratios);
+        let ratio = information.mean_log_ratio(&log_ratios);
         let by = ratio.unwrap_or(0.0).exp();
-        let together = match ratios {
+        let log_sizes = match ratios {
             Some(_) => information.logarithms(VARIANCE, |x, y| 0.5 * (x * y).ln()),
             None => information.logarithms(VARIANCE_OF_SUM, |x, y| (x / by + y * by).ln()),
         };
-        let sizes = information.slopes(&together);
+        let sizes = information.slopes(&log_sizes);
         if sizes.is_none() && ratios.is_none() && ratio.is_none() {
             return None;
         }
-        let around = nearest(positions, AROUND);
+        let around = nearest(positions, SURROUNDING);
         let sites = sites(positions, &around, &places, information.margin)?;
         let nothing = [0.0; TERMS];
         let sizes = at(&sizes.unwrap_or(nothing), &sites);
-        // The mean of the ratios is that of their logarithms, where it is any.
+        // The mean of the logarithms of the ratios, where it is significant.
         let off = match &ratios {
-            Some(slopes) => apart.values.mean() - mean(&at(slopes, &information.sites)),
+            Some(slopes) => log_ratios.values.mean() - mean(&at(slopes, &information.sites)),
             None => ratio.unwrap_or(0.0),
         };
         let ratios = at(&ratios.unwrap_or(nothing), &sites);
@@ -126,7 +125,7 @@ fn mean(values: &[f64]) -> f64 {
 struct Information {
     /// Whether the margin is analysed.
     margin: bool,
-    /// q of the places that are used.
+    /// q of the positions that are used.
     sites: Vec<[f64; TERMS]>,
     /// Their neighbours.
     around: Vec<Vec<usize>>,
@@ -134,23 +133,24 @@ struct Information {
     squares: [DVector<f64>; 2],
 }
 
-/// Logarithms with their variance where noise is white.
+/// Logarithms, and the variance that they have of white noise.
 struct Logarithms {
     values: DVector<f64>,
     variance: f64,
 }
 
 impl Information {
-    /// The differences at sound places; `None` where these are too few, or have no noise.
+    /// The differences at sound positions; `None` where these are too few, or have no noise.
     fn of(positions: &[[f64; 2]], z: &[[f64; 2]]) -> Option<Self> {
         if positions.len() < FEWEST[0] {
             return None;
         }
-        let around = nearest(positions, FAR);
+        let around = nearest(positions, CORRELATED_NEIGHBOURS);
         let differences = differences(&around, z)?;
         let margin = correlation(&around, z) < CORRELATED;
         let all = sites(positions, &around, positions, true)?;
-        let is_inside = |index: &usize| all[*index][OUT[0]].max(all[*index][OUT[1]]) < MARGIN;
+        let is_inside =
+            |index: &usize| all[*index][MARGIN_TERMS[0]].max(all[*index][MARGIN_TERMS[1]]) < MARGIN;
         let chosen = (0..positions.len()).filter(|index| margin || is_inside(index));
         let chosen: Vec<usize> = chosen.collect();
         if chosen.len() < FEWEST[0] {
@@ -170,13 +170,13 @@ impl Information {
             around: if places.len() == positions.len() {
                 around
             } else {
-                nearest(&places, FAR)
+                nearest(&places, CORRELATED_NEIGHBOURS)
             },
             squares: [0, 1].map(squares),
         })
     }
 
-    /// Logarithms that are made of dx² and dy².
+    /// Logarithms as a function of dx² and dy².
     fn logarithms(&self, variance: f64, of: impl Fn(f64, f64) -> f64) -> Logarithms {
         let [x, y] = &self.squares;
         Logarithms {
@@ -185,7 +185,7 @@ impl Information {
         }
     }
 
-    /// g or h, where chance would hardly cause it; quadratic terms are zero where places are few.
+    /// g or h where it is significant; quadratic terms are zero where there are few positions.
     fn slopes(&self, logarithms: &Logarithms) -> Option<[f64; TERMS]> {
         let sites = &self.sites;
         let count = if sites.len() < FEWEST[1] {
@@ -207,17 +207,19 @@ impl Information {
         let mut slopes = [0.0; TERMS];
         slopes[..count].copy_from_slice(coefficients.as_slice());
         let [low, high] = extremes(at(&slopes, sites));
-        let is_sure = statistic > chi_squared_limit(count as f64, LEVEL);
-        (is_sure && high - low > 2.0 * LEAST.ln()).then_some(slopes)
+        let is_significant = statistic > chi_squared_limit(count as f64, LEVEL);
+        (is_significant && high - low > 2.0 * LEAST.ln()).then_some(slopes)
     }
 
     /// The mean of ln σx/σy, where it is significantly different from zero.
-    fn mean_apart(&self, apart: &Logarithms) -> Option<f64> {
-        let mean = apart.values.mean();
-        let residuals = apart.values.add_scalar(-mean);
-        let error = (self.variance(&residuals, apart.variance) / residuals.len() as f64).sqrt();
-        let is_sure = mean.abs() > SURE * error && mean.abs() > LEAST_OF_COMPONENTS.ln();
-        is_sure.then_some(mean)
+    fn mean_log_ratio(&self, log_ratios: &Logarithms) -> Option<f64> {
+        let mean = log_ratios.values.mean();
+        let residuals = log_ratios.values.add_scalar(-mean);
+        let error =
+            (self.variance(&residuals, log_ratios.variance) / residuals.len() as f64).sqrt();
+        let is_significant =
+            mean.abs() > SIGNIFICANT * error && mean.abs() > LEAST_OF_COMPONENTS.ln();
+        is_significant.then_some(mean)
     }
 
     /// v s², from the residuals. Gross errors spread logarithms more widely than noise does.
@@ -244,8 +246,8 @@ fn at(slopes: &[f64; TERMS], sites: &[[f64; TERMS]]) -> Vec<f64> {
     sites.iter().map(of_site).collect()
 }
 
-/// Logarithms of variances, not below those of nine tenths of them: the least ones lie where few places determine
-/// them, and would have the largest influence.
+/// Logarithms of variances, limited from below by their 10 % quantile and from above relative to it: the lowest ones lie where few positions
+/// determine them, and would have the largest influence.
 fn bounded(logarithms: Vec<f64>) -> Vec<f64> {
     const FEW: f64 = 0.1;
     let mut sorted = logarithms.clone();
@@ -258,7 +260,7 @@ fn bounded(logarithms: Vec<f64>) -> Vec<f64> {
         .collect()
 }
 
-/// q of places, relative to those that are sound; `None` where it is not a number.
+/// q of positions, relative to the range of the sound ones; `None` where it is not a number.
 fn sites(
     positions: &[[f64; 2]],
     around: &[Vec<usize>],
@@ -271,8 +273,8 @@ fn sites(
             let [low, high] = sides[axis];
             share(2.0 * position[axis] - low - high, high - low)
         });
-        let others = &others[..others.len().min(AROUND)];
-        let [out_x, out_y] = out_of_the_middle(positions, *position, others);
+        let others = &others[..others.len().min(SURROUNDING)];
+        let [out_x, out_y] = off_centre(positions, *position, others);
         with_margin([x, y, out_x, out_y, x * x, x * y, y * y], margin)
     };
     let all: Vec<_> = positions.iter().zip(around).map(of_place).collect();
@@ -282,8 +284,8 @@ fn sites(
         .then_some(all)
 }
 
-/// How far a place lies out of the middle of its neighbours along each axis, over their mean distance.
-fn out_of_the_middle(positions: &[[f64; 2]], [x, y]: [f64; 2], others: &[usize]) -> [f64; 2] {
+/// The distance of a position from the centre of its neighbours along each axis, over their mean distance.
+fn off_centre(positions: &[[f64; 2]], [x, y]: [f64; 2], others: &[usize]) -> [f64; 2] {
     let away = others
         .iter()
         .map(|other| [positions[*other][0] - x, positions[*other][1] - y]);
@@ -293,7 +295,7 @@ fn out_of_the_middle(positions: &[[f64; 2]], [x, y]: [f64; 2], others: &[usize])
     sum.map(|sum: f64| share(sum.abs(), far))
 }
 
-/// A ratio; zero where the whole is not positive.
+/// A ratio; zero where the denominator is not positive.
 fn share(part: f64, total: f64) -> f64 {
     if total > 0.0 { part / total } else { 0.0 }
 }
@@ -326,15 +328,15 @@ fn correlation(around: &[Vec<usize>], z: &[[f64; 2]]) -> f64 {
     share(around.iter().zip(z).map(of_place).sum(), squares.sum())
 }
 
-/// A site, of which the margin says nothing or something.
+/// The terms of a site; those of the margin are zero where it is not analysed.
 fn with_margin(mut site: [f64; TERMS], margin: bool) -> [f64; TERMS] {
     if !margin {
-        OUT.into_iter().for_each(|term| site[term] = 0.0);
+        MARGIN_TERMS.into_iter().for_each(|term| site[term] = 0.0);
     }
     site
 }
 
-/// Squares that have logarithms. Rounded values may have no difference to their neighbours at all.
+/// Squares above zero, which have logarithms: rounded values may equal their neighbours.
 fn above_rounding(squares: Vec<f64>) -> DVector<f64> {
     const LEAST: f64 = 1e-4;
     let squares = DVector::from_vec(squares);

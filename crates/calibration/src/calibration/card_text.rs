@@ -77,7 +77,7 @@ fn section(name: &str, entries: impl IntoIterator<Item = (&'static str, String)>
     format!("\n[{name}]\n{lines}")
 }
 
-/// The text of a card with the softening of a fit in place of its earlier statements on softening and fits.
+/// The text of a card in which the softening of a fit replaces earlier statements on softening and fits.
 fn softened_card(base: &str, fit: &Fit, provenance: &Provenance) -> String {
     let mut text = format!(
         "# The softening was fitted by `gelbench materials fit` to {}.\n",
@@ -195,7 +195,7 @@ fn parameters(text: &mut String, fit: &Fit) {
     }
 }
 
-/// The standard error of a parameter in words.
+/// The standard error of a parameter as text.
 fn error(fit: &Fit, index: usize) -> String {
     match fit.quality.estimates[index].standard_error {
         _ if fit.quality.held[index] => "held, not fitted".to_owned(),
@@ -205,7 +205,7 @@ fn error(fit: &Fit, index: usize) -> String {
     }
 }
 
-/// The Prony series, and the range of the data behind it.
+/// The Prony series, and the ranges of times and rates that the data cover.
 fn viscosity(text: &mut String, fit: &Fit) {
     let Some(relaxed) = &fit.relaxed else {
         return;

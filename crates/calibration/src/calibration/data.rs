@@ -1,4 +1,4 @@
-//! Test data: reading of tables and records, the meaning of their columns, zeros and cycles, and impossible values.
+//! Test data: reading of tables and records, the roles of their columns, zeros and cycles, and impossible values.
 
 mod choice;
 mod columns;

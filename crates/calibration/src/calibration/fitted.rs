@@ -20,9 +20,9 @@ pub struct Fit {
     pub law: &'static Law,
     /// The law with its parameters.
     pub fitted: Arc<dyn HyperelasticLaw>,
-    /// The parameters, in internal units: those of the law, and behind them those of relaxation or softening.
+    /// The parameters, in internal units: those of the law, followed by those of relaxation or softening.
     pub parameters: Vec<Parameter>,
-    /// How many of them are the law's; none where it is that of a card.
+    /// The number of the law's parameters; zero where the law is that of a card.
     pub of_law: usize,
     /// Other entries of a card of the law: key and choice.
     pub choices: Vec<(&'static str, String)>,
@@ -39,11 +39,11 @@ pub struct Fit {
     pub relaxed: Option<Relaxed>,
     /// The softening of a fit to loading and unloading.
     pub softened: Option<Softened>,
-    /// The parameters and R² of a homogeneous sheet that carries nothing as it is mounted, where its state at rest was found with the law.
+    /// The parameters and R² for a homogeneous sheet that is free of stress as mounted, where its state at rest was found with the law.
     pub at_rest_as_mounted: Option<(Vec<Parameter>, f64)>,
     /// The mounting of a sheet that was solved with the law.
     pub mounted: Option<MountedFit>,
-    /// What the protocols of a biaxial test say of the law.
+    /// How well the protocols of a biaxial test determine the law.
     pub protocols: Option<Protocols>,
 }
 
@@ -72,7 +72,7 @@ pub struct MountedFit {
     pub rounds: usize,
 }
 
-/// What the protocols of a biaxial test say of a law.
+/// How well the protocols of a biaxial test determine a law.
 #[derive(Clone, Debug)]
 pub struct Protocols {
     /// The root of the mean square of the errors with which each protocol is predicted by the law fitted to the others, in % of the largest
@@ -110,7 +110,7 @@ impl Fit {
         &self.parameters[..self.of_law]
     }
 
-    /// The values that were fitted: those of the law, and behind them those of the state at rest.
+    /// The values that were fitted: those of the law, followed by those of the zeros and of the state at rest.
     pub(in crate::calibration) fn values(&self) -> Vec<f64> {
         let of_law = self
             .law_parameters()
@@ -125,10 +125,10 @@ impl Fit {
         self.stress_measure
     }
 
-    /// The fit, unless it does not follow the data at all, which no stated bound keeps it from: such parameters describe nothing.
+    /// The fit; refused where it does not follow the data at all although no bound was stated, which could be the reason.
     ///
     /// # Errors
-    /// [`Error::Input`] with what was taken of the data, in which the reason may be.
+    /// [`Error::Input`] with the columns, rows and zeros that were read, in which the reason may be.
     pub(in crate::calibration) fn that_follows(self, tests: &[TestData]) -> Result<Self, Error> {
         let quality = &self.quality;
         if quality.follows_data() || !self.settings.bounds.is_empty() {
@@ -154,8 +154,8 @@ impl Fit {
         Err(Error::input(message, hint))
     }
 
-    /// The tests as they were fitted: those of the sheet's middle where it was solved on its mounting, with the zeros that were found
-    /// together with the law.
+    /// The tests as they were fitted: with the zeros that were found together with the law, and where a sheet was solved on its mounting, the
+    /// tests of its middle.
     pub fn fitted_tests(&self, tests: &[TestData]) -> Vec<TestData> {
         let tests = self
             .mounted

@@ -1,6 +1,6 @@
 //! Groups of specimens: the mean law, how much specimens differ, and the difference of two groups.
 //!
-//! Parameters that a test hardly determines cannot be averaged. What is averaged are the stresses of the fitted laws, each with its own
+//! Parameters that a test determines poorly cannot be averaged. Instead the stresses of the fitted laws are averaged, each with its
 //! uncertainty, at strains that all specimens have reached ([`RandomEffects`]); the mean law is fitted to their means.
 
 use rayon::prelude::*;
@@ -23,7 +23,7 @@ pub struct Group {
     pub tests: Vec<TestData>,
 }
 
-/// What is averaged: a stress at strains.
+/// A state at which the stresses of specimens are averaged.
 #[derive(Clone, Copy, Debug)]
 pub struct GroupState {
     /// The strains, and the axis of the stress.
@@ -128,7 +128,7 @@ impl Group {
             let pairs = positions.iter().zip(halves);
             pairs
                 .map(|(one, half)| {
-                    // Without intervals the spread alone speaks.
+                    // Without intervals, the spread between specimens is the only uncertainty.
                     let error = if half.is_finite() {
                         half / normal_reach()
                     } else {

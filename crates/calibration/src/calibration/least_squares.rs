@@ -28,7 +28,7 @@ struct Problem<'a> {
     model: &'a dyn Residuals,
     parameters: Vec<MPPar>,
     config: MPConfig,
-    /// A substitute for residuals that are not finite, so that the step is refused.
+    /// The value that replaces residuals which are not finite, so that the step is refused.
     refused: f64,
 }
 
@@ -114,7 +114,7 @@ pub fn minimise(
     (sum_of_squares(model, &result) <= begin).then_some(result)
 }
 
-/// Improves `start` within `bounds` until it is a minimum, or for so many turns; `None` where the method fails from there.
+/// Improves `start` within `bounds` until it is a minimum, or for ten turns; `None` where the method fails from there.
 pub fn descend(model: &dyn Residuals, start: &[f64], bounds: &[[f64; 2]]) -> Option<Vec<f64>> {
     const TURNS: usize = 10;
     let mut values = minimise(model, start, bounds, Precision::Full)?;
@@ -127,7 +127,7 @@ pub fn descend(model: &dyn Residuals, start: &[f64], bounds: &[[f64; 2]]) -> Opt
     Some(values)
 }
 
-/// Values near some others with a sum of squares that is smaller by more than a millionth of what the noise makes of it; `None` at a
+/// Values nearby whose sum of squares S is smaller by more than a millionth of k S/ν, with k values and ν degrees of freedom; `None` at a
 /// minimum. Tried are a Gauss–Newton step, halved as often as needed, and a small step of each value away from its bound.
 ///
 /// # References
@@ -136,7 +136,7 @@ pub fn lower(model: &dyn Residuals, values: &[f64], bounds: &[[f64; 2]]) -> Opti
     const HALVINGS: i32 = 12;
     const INSIDE: [f64; 3] = [1e-3, 1e-5, 1e-7];
     let at = Tangent::new(model, values, bounds)?;
-    let limit = at.considerable()?;
+    let limit = at.significantly_smaller()?;
     let is_lower = |tried: &Vec<f64>| sum_of_squares(model, tried) < limit;
     let along = |halvings: i32| at.moved(0.5_f64.powi(halvings));
     let inside = (0..values.len()).filter(|index| !at.free.contains(index));
@@ -152,7 +152,7 @@ pub fn lower(model: &dyn Residuals, values: &[f64], bounds: &[[f64; 2]]) -> Opti
     steps.find(is_lower)
 }
 
-/// The residuals at some values and their derivatives by those that no bound holds.
+/// The residuals at some values, and their derivatives with respect to those that are not at a bound.
 struct Tangent<'a> {
     values: &'a [f64],
     bounds: &'a [[f64; 2]],
@@ -182,17 +182,17 @@ impl<'a> Tangent<'a> {
         })
     }
 
-    /// A sum of squares that is considerably smaller; `None` where residuals are so small that no test tells them from nothing.
-    fn considerable(&self) -> Option<f64> {
+    /// The limit below which a sum of squares is significantly smaller; `None` where the residuals are as small as rounding.
+    fn significantly_smaller(&self) -> Option<f64> {
         const SHARE: f64 = 1e-6;
-        const NOTHING: f64 = 1e-6;
+        const NEGLIGIBLE: f64 = 1e-6;
         let sum = self.residual.norm_squared();
         let columns = self.free.iter().zip(self.jacobian.column_iter());
         let sizes = columns.map(|(index, column)| column.norm() * self.values[*index].abs());
         let scale = sizes.fold(0.0, f64::max);
         let freedom = self.residual.len().saturating_sub(self.values.len()).max(1);
         let limit = sum * (1.0 - SHARE * self.values.len() as f64 / freedom as f64);
-        (sum > (NOTHING * scale).powi(2)).then_some(limit)
+        (sum > (NEGLIGIBLE * scale).powi(2)).then_some(limit)
     }
 
     /// The values after a share of the Gauss–Newton step, within the bounds.
@@ -211,8 +211,8 @@ impl<'a> Tangent<'a> {
 }
 
 /// ∂rᵢ/∂pⱼ by central differences, of second order in the step, or by a one-sided one where the model has no value on the other
-/// side; columns of `fixed` parameters are zero. Steps are shares of the parameters, or of their `least` sizes that count. `None` where it
-/// has a value on neither side.
+/// side; columns of `fixed` parameters are zero. Steps are proportional to the parameters, or to their `least` sizes where these are
+/// larger. `None` where the model has a value on neither side.
 pub fn jacobian(
     model: &dyn Residuals,
     at: &[f64],

@@ -9,7 +9,7 @@ use super::softening::{Base, fit_softening};
 use crate::error::Error;
 use crate::material::registry::Law;
 
-/// What a fit finds beside the parameters of a law.
+/// What a fit finds in addition to the parameters of a law.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Memory {
     /// Nothing.
@@ -24,7 +24,7 @@ impl Memory {
     /// Fits a law with it to some tests together.
     ///
     /// # Errors
-    /// As [`fit`], [`fit_relaxation`] and [`fit_softening`]; [`Error::Input`] for simple shear with anything beside the law.
+    /// As [`fit`], [`fit_relaxation`] and [`fit_softening`]; [`Error::Input`] for relaxation or softening in simple shear.
     pub fn fit(
         self,
         law: &'static Law,

@@ -4,14 +4,14 @@
 //! homogeneous law ─▶ finite elements of the mounted sheet ─▶ what the middle carries of the measured forces ─▶ law ─▶ …
 //! ```
 //!
-//! Forces over cross-sections are not the stress of the middle: tines concentrate the load, and what lies beside them is slack. So the
+//! Forces over cross-sections are not the stress of the middle: tines concentrate the load, and the sheet between them is slack. So the
 //! sheet is solved with the present law p at some strains ε of its bars; there its middle has the strains m(ε; p), and its forces f are
 //!
 //! ```text
 //! fₖ/Aₖ = Pₖ(m; p) + cₖ(ε; p) (|Pₖ(m; p)| + P₀),   P₀ a fiftieth of the largest stress
 //! ```
 //!
-//! c takes up what the tines do. Interpolated to all rows (cubic radial functions), m and c turn each measured force into the stress that
+//! c is the effect of the tines. Interpolated to all rows (cubic radial functions), m and c turn each measured force into the stress that
 //! the middle carried at its own stretches, to which the law is fitted as to any test. What c and m change with the law enters by its
 //! derivatives, taken from the finite elements of laws nearby: the fit is that of the finite elements once it does not change, and so are
 //! its intervals.
@@ -37,7 +37,7 @@ mod tests;
 
 use solved::{Solved, named};
 
-/// Knots of the sheet are no farther apart, as a share of the largest strains.
+/// The largest distance between neighbouring knots, as a share of the largest strains.
 const NEAR: f64 = 0.07;
 /// Forces that change by less, as a share of the largest one, are settled.
 const SETTLED: f64 = 2e-4;
@@ -59,8 +59,8 @@ pub fn mounting(tests: &[TestData]) -> Result<Option<Mounting>, Error> {
     Ok(first.and_then(|mounted| mounted.mounting))
 }
 
-/// Values of a law, and of the state at rest, from which both settle. Their state at rest is held as it is mounted: a stretch as mounted
-/// takes up what an isotropic law lacks, and leads far away.
+/// Values of a law, and of the state at rest, from which the iteration converges. At first the sheet is taken as free of stress as mounted:
+/// with an isotropic law, a stretch as mounted would compensate for the missing anisotropy and lead far away.
 fn begin(
     law: &'static Law,
     tests: &[TestData],

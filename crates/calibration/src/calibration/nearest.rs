@@ -71,12 +71,14 @@ pub fn nearest(
         );
         Error::input(message, "widen the bounds, or choose another law")
     })?;
-    let begun = Solution {
+    let solution = Solution {
         misfit,
         values: minimum.values,
         bounds,
-    };
-    let solution = begun.checked(law, &parameters)?.settled().with_zeros();
+    }
+    .checked(law, &parameters)?
+    .settled()
+    .with_zeros();
     Ok(finished(
         law,
         &parameters,
@@ -86,8 +88,8 @@ pub fn nearest(
     ))
 }
 
-/// A law with what is linear in its values, [`Elastic::with_linear`], about `start`: the law's values, and behind them those of the zeros
-/// that are sought.
+/// A law with a part that is linear in its values about `start`, see [`Elastic::with_linear`]. Values are those of the law, followed by those
+/// of the zeros that are sought.
 pub struct About<'a, D> {
     pub law: &'static Law,
     pub tests: &'a [TestData],
@@ -132,7 +134,7 @@ impl<D: Fn(&Observation) -> (Vec<f64>, f64)> About<'_, D> {
         })
     }
 
-    /// The best values within a share of the size of each, by which the start may be missed.
+    /// The best values that differ from the start by at most a share of the size of each.
     pub fn within(&self, share: f64) -> Result<Vec<f64>, Error> {
         let model = self.model()?;
         let sizes = self.start.iter().zip(&model.sizes);

@@ -1,5 +1,5 @@
-//! What the protocols of a biaxial test say of a law: how well those that it was not fitted to are predicted, and which further one would
-//! make it known best.
+//! How well the protocols of a biaxial test determine a law: the error of its prediction of protocols to which it was not fitted, and the
+//! further protocol that would reduce the uncertainty of its parameters most.
 //!
 //! ```text
 //! C' = C − C Jᵀ (σ² 1 + J C Jᵀ)⁻¹ J C,   J = ∂r/∂p of the further protocol, σ² the variance of the weighted residuals r
@@ -16,7 +16,7 @@ use super::least_squares::{LEAST_SIZE, jacobian, sum_of_squares};
 use super::nearest::About;
 use super::regression::{Elastic, Misfit, Response, Zero};
 
-/// What the protocols of biaxial tests say of a law that was fitted to them; `None` of other tests, or of a single protocol.
+/// The figures of the protocols to which a law was fitted; `None` for other tests, or for a single protocol.
 pub fn protocols(fit: &Fit, tests: &[TestData]) -> Option<Protocols> {
     let tests = fit.mounted.as_ref().map_or(tests, |mounted| &mounted.tests);
     let is_biaxial = tests.iter().all(|test| test.test == Test::Biaxial);
@@ -114,7 +114,7 @@ fn further(fit: &Fit, protocols: &[TestData]) -> Option<FurtherProtocol> {
     })
 }
 
-/// The variance of the weighted residuals, as that of so many independent ones as they are worth.
+/// The variance of the weighted residuals, increased by the number of points over the number of independent ones.
 fn variance(fit: &Fit, protocols: &[TestData], values: usize) -> f64 {
     let response = Elastic::new(fit.law, protocols).with_zeros();
     let misfit = Misfit::new(response, fit.settings.weighting);

@@ -2,8 +2,8 @@
 //!
 //! The measured strains are followed as they are: stress relaxation, creep, cycles and pulls at several rates are all
 //! histories of strain with stresses, and are fitted together. The law is that of long times. Terms are added as long
-//! as AICc falls; relaxation times lie between the shortest interval of the data and their longest duration, outside
-//! of which the data resolve nothing.
+//! as AICc falls; relaxation times lie between the shortest interval of the data and their longest duration: others
+//! are not resolved.
 
 use super::data::{Branches, TestData, Times};
 use super::fitted::{Fit, Relaxed};
@@ -53,11 +53,12 @@ pub fn fit_relaxation(
     let resolved = resolved(&misfit.response.histories)?;
     let (series, tried) = best_series(&misfit, &elastic, settings, terms, resolved)?;
     let parameters = series.parameters;
-    let begun = Solution {
+    let solution = Solution {
         misfit,
         ..series.solution
-    };
-    let solution = begun.checked(law, &parameters)?.settled();
+    }
+    .checked(law, &parameters)?
+    .settled();
     let mut fit = solution.fit(law, &parameters, settings, None);
     let mut material = solution.misfit.response.material(&solution.values);
     material.covered = Covered {
@@ -141,7 +142,7 @@ fn best_series<'a>(
     Ok((best, tried))
 }
 
-/// The law without relaxation, whose parameters the search begins with.
+/// The fit of the law without relaxation, at whose parameters the search begins.
 fn elastic(law: &'static Law, tests: &[TestData], settings: &FitSettings) -> Result<Fit, Error> {
     if law.name == MARLOW_TABLE {
         let message = format!("{} takes a curve as it is, at one rate", law.name);

@@ -125,13 +125,13 @@ pub fn limits(
             return Ok([*value; 2]);
         }
         let [low, high] = match parameter.bound {
-            // The law is the same at every other angle.
+            // The law is periodic: all angles lie in the usual range.
             Bound::Any if parameter.dimension == Dimension::Angle && !is_stated => {
                 let [low, high] = parameter.usual;
                 [if has_shear(tests) { low } else { low.max(0.0) }, high]
             }
             Bound::Any => [f64::NEG_INFINITY, f64::INFINITY],
-            // Next to nothing beside what the data speak of.
+            // Negligible compared with the stresses of the data.
             Bound::Positive if parameter.is_stress() => [1e-9 * scale, f64::INFINITY],
             Bound::Positive => [1e-9, f64::INFINITY],
             Bound::NonNegative => [0.0, f64::INFINITY],

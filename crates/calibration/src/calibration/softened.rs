@@ -62,7 +62,7 @@ pub fn cycles(
 }
 
 impl Softened {
-    /// The path of a test along one axis with so many steps from each observation to the next: what is drawn of the strain, and the
+    /// The path of a test along one axis with `steps` steps from each observation to the next: the strain over which it is drawn, and the
     /// stress of the softened law in the measure of the data, in MPa.
     pub fn path(
         &self,

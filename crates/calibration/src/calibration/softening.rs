@@ -64,12 +64,13 @@ pub fn fit_softening(base: Base, tests: &[TestData], settings: &FitSettings) -> 
         Error::input(message, "look at the strains, or choose another law")
     })?;
     let values = descend(&misfit, &rough, &bounds).unwrap_or(rough);
-    let begun = Solution {
+    let solution = Solution {
         misfit,
         values,
         bounds,
-    };
-    let solution = begun.checked(first.law, &parameters)?.settled();
+    }
+    .checked(first.law, &parameters)?
+    .settled();
     let mut fit = solution.fit(first.law, &parameters, settings, None);
     fit.quality.warnings.extend(taken_zeros(tests));
     let softening = solution.misfit.response.softening(&solution.values);

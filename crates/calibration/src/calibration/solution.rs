@@ -1,14 +1,14 @@
-//! Values of a model of tests: their weights, what they are worth, and the fit that follows.
+//! Values of a model of tests: their weights, their uncertainty, and the resulting fit.
 //!
 //! ```text
 //! rᵢ = (σᵢ − σ(p; λᵢ))/σ(p₀; λᵢ),   p₀ = p at the end
 //! ```
 //!
 //! Weights 1/σᵢ share the noise of the stresses that they weigh. A stress is of the first degree in the parameters that are
-//! stresses, σ = Σ p ∂σ/∂p, so that (σᵢ − σ)/σᵢ = 1 − Σ p ∂(σ/σᵢ)/∂p: a constant and the derivatives take all of it, whatever the
-//! noise, and no test tells noise from pattern. And what is measured too low weighs more: a noise of s makes stresses too
+//! stresses, σ = Σ p ∂σ/∂p, so that (σᵢ − σ)/σᵢ = 1 − Σ p ∂(σ/σᵢ)/∂p: a constant and the derivatives explain all of it, whatever the
+//! noise, so that no test distinguishes noise from a pattern. And stresses that are measured too low weigh more: a noise of s makes stresses too
 //! small by 2 s². Fitted stresses as weights have neither; where the residuals are noise, the fit is repeated with them until
-//! it comes out as it went in (quasi-likelihood). A law that misses the data keeps the weights of the data for its values.
+//! it no longer changes (quasi-likelihood). Where the residuals are not noise, the values stay those by the weights of the data.
 //!
 //! # References
 //! R. W. M. Wedderburn, Biometrika 61, 439 (1974), doi:10.1093/biomet/61.3.439
@@ -32,12 +32,12 @@ pub struct Solution<R> {
 }
 
 impl<R: Response> Solution<R> {
-    /// What the residuals are.
+    /// The statistics of the residuals.
     pub fn judged(&self) -> Judged {
         Judged::of(&self.misfit, &self.values, &self.bounds)
     }
 
-    /// Refuses values of a law at which the sum of squares still falls.
+    /// Refuses values at which the sum of squares still falls.
     pub fn checked(self, law: &Law, parameters: &[Parameter]) -> Result<Self, Error> {
         if lower(&self.misfit, &self.values, &self.bounds).is_none() {
             return Ok(self);
@@ -50,7 +50,7 @@ impl<R: Response> Solution<R> {
         })
     }
 
-    /// By the weights of the fitted stresses; the values are repeated by them where the residuals are noise.
+    /// The solution with the weights of the fitted stresses; where the residuals are noise, the values are fitted again with them.
     pub fn settled(self) -> Self {
         let reweighed = Self {
             misfit: self.misfit.reweighed(&self.values),
@@ -64,7 +64,7 @@ impl<R: Response> Solution<R> {
         }
     }
 
-    /// The values that are the best ones by the weights of their own stresses; `None` where they do not come to rest.
+    /// The values that are the best ones by the weights of the stresses that they give; `None` where this iteration does not converge.
     fn repeated(&self) -> Option<Self> {
         const REPEATS: usize = 20;
         const SAME: f64 = 1e-8;
@@ -172,10 +172,10 @@ fn weighted_square(weighting: Weighting, tests: &[TestData], predicted: &[Vec<f6
 ///
 /// The parabola that follows a beginning back to rest, [`super::data`], sees a few rows; the law sees all of them. Taken as known, the
 /// zero that the parabola finds makes the law's parameters wrong by many of their standard errors. So the zero is one more
-/// value of the fit, r(p, δ) = σᵢ − σ(p; λᵢ + δ) or σᵢ + δ − σ(p; λᵢ), and its uncertainty is part of the intervals. Where what
-/// is left then is no noise, the law would take its own misfit for a zero: the zero of a record stays.
+/// value of the fit, r(p, δ) = σᵢ − σ(p; λᵢ + δ) or σᵢ + δ − σ(p; λᵢ), and its uncertainty is part of the intervals. Where the
+/// residuals are then not noise, a shift of the zero would compensate for a misfit of the law: the zero of a record stays.
 impl<'a> Solution<Elastic<'a>> {
-    /// With the zeros among the values, where the records had any and what is left is noise then, and the state at rest where it is sought.
+    /// With the zeros of records among the values, where the residuals are then noise, and with the state at rest where it is sought.
     pub fn with_zeros(self) -> Self {
         self.wider().unwrap_or(self)
     }

@@ -1,8 +1,8 @@
 //! The uncertainty of an identified function.
 //!
 //! With the penalty taken as prior knowledge of the function, its coefficients have the covariance s² (A + P)⁻¹,
-//! which includes the bias of the penalty. Intervals are valid at one place; the band is valid at all places of both
-//! functions together: its half width is c standard errors with
+//! which includes the bias of the penalty. Intervals are valid at one argument; the band is valid at all arguments of
+//! both functions together: its half width is c standard errors with
 //!
 //! ```text
 //! Σ [κ/π (1 + c²/ν)^(−ν/2) + P(|t_ν| > c)] = 5 %        κ = ∫ ‖d(l/‖l‖)/dx‖ dx,  l lᵀ = b(x)ᵀ Cov b(x)
@@ -28,7 +28,7 @@ pub struct Function {
     pub covariance: DMatrix<f64>,
     /// Effective number of coefficients.
     pub degrees: f64,
-    /// Half widths in standard errors: of the 95 % interval at one place and of the 95 % band.
+    /// Half widths in standard errors: of the 95 % interval at one argument and of the 95 % band.
     pub reach: [f64; 2],
 }
 
@@ -48,7 +48,7 @@ impl Function {
         }
     }
 
-    /// Takes standard errors, intervals and bands away, which mean nothing where the recording is not explained.
+    /// Removes standard errors, intervals and bands, which are meaningless where the recording is not explained.
     pub fn withhold_intervals(&mut self) {
         self.covariance.fill(f64::NAN);
         self.reach = [f64::NAN; 2];
@@ -58,13 +58,13 @@ impl Function {
         Estimate::new(value, standard_error, self.reach[0])
     }
 
-    /// The value at `x` with its standard error and its 95 % interval at this place alone.
+    /// The value at `x` with its standard error and its 95 % interval at this argument alone.
     pub fn at(&self, x: f64) -> Estimate {
         let value = self.coefficients.dot(&self.basis.values(x, 0));
         self.estimate(value, larger(self.product(x, x), 0.0).sqrt())
     }
 
-    /// The 95 % band at `x`, which is valid at all places of both functions together.
+    /// The 95 % band at `x`, which is valid at all arguments of both functions together.
     pub fn band(&self, x: f64) -> [f64; 2] {
         let at = self.at(x);
         [-1.0, 1.0].map(|sign| at.value + sign * self.reach[1] * at.standard_error)
@@ -95,7 +95,7 @@ impl Function {
     }
 }
 
-/// Half widths in standard errors for so many degrees of freedom.
+/// Half widths of interval and band in standard errors.
 pub fn reach(functions: &[Function; 2], freedom: f64) -> Option<[f64; 2]> {
     const MISSED: f64 = 0.05;
     let point = student_reach(freedom);

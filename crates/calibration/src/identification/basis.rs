@@ -11,7 +11,7 @@ pub enum Form {
     Constant,
     /// A polynomial of this degree.
     Polynomial(usize),
-    /// A cubic spline on so many equal parts with a penalty on its roughness.
+    /// A cubic spline on this number of equal parts, with a penalty on its roughness.
     Spline(usize),
 }
 

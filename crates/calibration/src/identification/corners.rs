@@ -9,10 +9,10 @@ use crate::statistics::median;
 const STRIDES: [usize; 4] = [1, 2, 4, 8];
 
 /// The surroundings of an instant, in strides.
-const AROUND: usize = 6;
+const SURROUNDINGS: usize = 6;
 
 /// How many times larger than the median of its surroundings a corner's difference is: noise alone reaches six.
-const CLEARLY: f64 = 10.0;
+const SIGNIFICANT: f64 = 10.0;
 
 /// Fewest corners that count: a single one is a jerk, or chance.
 const FEWEST: usize = 4;
@@ -31,11 +31,12 @@ fn at_stride(motion: &[f64], stride: usize) -> Vec<usize> {
     let sizes: Vec<f64> = (0..count).map(|i| difference(i).abs()).collect();
     let mut result: Vec<usize> = Vec::new();
     for (i, size) in sizes.iter().enumerate() {
-        let around = i.saturating_sub(AROUND * stride)..(i + AROUND * stride + 1).min(count);
+        let around =
+            i.saturating_sub(SURROUNDINGS * stride)..(i + SURROUNDINGS * stride + 1).min(count);
         let is_first = result
             .last()
             .is_none_or(|last| i + stride - last > 4 * stride);
-        if is_first && *size > CLEARLY * median(sizes[around].iter().copied()) && *size > 0.0 {
+        if is_first && *size > SIGNIFICANT * median(sizes[around].iter().copied()) && *size > 0.0 {
             result.push(i + stride);
         }
     }

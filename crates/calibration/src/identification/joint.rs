@@ -83,7 +83,7 @@ impl JointEquations {
 }
 
 impl Joint<'_> {
-    /// A motion, without forces yet.
+    /// The state with this motion and without forces.
     pub fn state(&self, motion: Vec<f64>) -> State {
         let coefficients = self.functions.iter().map(Basis::count).sum();
         State {
@@ -92,7 +92,7 @@ impl Joint<'_> {
         }
     }
 
-    /// The same with polynomials in place of splines.
+    /// The same with polynomials instead of splines.
     pub fn with_polynomials(&self) -> Self {
         const DEGREE: usize = 3;
         let functions = self.functions.map(|basis| match basis.form {
@@ -183,7 +183,7 @@ impl Joint<'_> {
         self.linearise_with(state, &[])
     }
 
-    /// The same with more parameters behind those of the functions.
+    /// The same with further parameters after those of the functions.
     ///
     /// # Errors
     /// As [`Self::linearise`].

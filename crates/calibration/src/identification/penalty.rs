@@ -27,7 +27,7 @@ const STEP: f64 = 0.5;
 ///
 /// # References
 /// Y.-J. Kim, C. Gu, J. R. Stat. Soc. B 66, 337 (2004), doi:10.1046/j.1369-7412.2003.05316.x
-const DEARNESS: f64 = 1.4;
+const INFLATION: f64 = 1.4;
 
 /// Added to the exponent of least cross-validation: a tenth of that weight keeps the bias of the penalty small
 /// compared with the standard errors, so that intervals are valid.
@@ -157,7 +157,7 @@ impl NormalEquations {
             let Some(result) = self.minimum(from, functions, exponents) else {
                 return f64::INFINITY;
             };
-            let used = others + DEARNESS * result.degrees.iter().sum::<f64>();
+            let used = others + INFLATION * result.degrees.iter().sum::<f64>();
             result.sum / (1.0 - used / observations).powi(2)
         };
         let mut best = (score([0.0; 2]), [0.0; 2]);

@@ -16,7 +16,7 @@ const FINER: usize = 4;
 /// there.
 const BRIDGED: f64 = 1.5;
 
-/// A signal's own spline.
+/// A spline fitted to one signal alone.
 #[derive(Clone, Debug)]
 pub struct SignalSpline {
     /// Equal parts of the duration.
@@ -57,7 +57,7 @@ pub struct BandMatrix {
 }
 
 impl BandMatrix {
-    /// The zero matrix for so many functions.
+    /// The zero matrix for `count` functions.
     ///
     /// # Errors
     /// [`FactorFault`] when there is no memory for it.
@@ -79,7 +79,7 @@ impl BandMatrix {
     pub fn add(&mut self, first: usize, row: &LocalValues) {
         for (i, a) in row.iter().enumerate() {
             for (j, b) in row.iter().enumerate().skip(i) {
-                // Rows of lower degrees end with zeros, which may lie beyond the last function.
+                // Rows of lower degrees end with zeros, whose columns may lie after the last function.
                 let product = a * b;
                 if product == 0.0 {
                     continue;

@@ -1,4 +1,4 @@
-//! Possible faults of a recording that its misfit hardly shows: each is one more parameter, tried in one linearised step.
+//! Possible faults of a recording that hardly increase its misfit: each is one more parameter, tried in one linearised step.
 //!
 //! ```text
 //! r = z τ + J δ + noise,   δ of variance P⁻¹           z the derivative of both signals by a suspect, J those by motion and functions, over the noise
@@ -19,8 +19,8 @@ use super::types::{FittedMotion, Identification};
 /// t above which a suspect is reported: by chance in less than one recording of a thousand, with eight tried.
 const LIMIT: f64 = 4.0;
 
-/// The share of the residuals beyond the noise that a suspect has to explain: where forms are wrong, or the noise is not white, suspects explain a
-/// little of it.
+/// The share of the residuals in excess of the noise that a suspect has to explain: where forms are wrong, or the noise is not white, any
+/// suspect explains a little of it.
 const TAKEN: f64 = 0.5;
 
 /// The least share of zᵀz in I: a smaller one is part of K(·), D(·) or the motion.
@@ -64,7 +64,7 @@ impl Suspect {
         matches!(self, Self::StepOfK | Self::Friction)
     }
 
-    /// The suspect in words, with its amount.
+    /// A description of the suspect with its amount.
     fn words(self, amount: f64, error: f64) -> String {
         let (what, factor, unit) = match self {
             Self::ForceZero => ("a zero error of the force of", 1.0, "N"),
@@ -216,7 +216,7 @@ pub fn examine(
     sure
 }
 
-/// What suspects say of the recording.
+/// The reason why suspects make a recording doubtful, with a remedy.
 pub fn description(suspects: &[Suspected]) -> Option<String> {
     let words = suspects
         .iter()

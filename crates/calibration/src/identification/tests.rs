@@ -6,7 +6,7 @@ use crate::document::{Statements, Table};
 
 mod recordings;
 
-const PLACES: [f64; 9] = [-13.0, -10.0, -7.0, -4.0, -1.0, 2.0, 5.0, 8.0, 11.0];
+const POSITIONS: [f64; 9] = [-13.0, -10.0, -7.0, -4.0, -1.0, 2.0, 5.0, 8.0, 11.0];
 
 fn settings(forms: [Form; 2]) -> IdentificationSettings {
     IdentificationSettings {
@@ -36,7 +36,7 @@ fn known_functions_lie_within_their_bands_in_nine_of_ten_trials() {
             let [low, high] = function.band(x);
             (low..=high).contains(&truth)
         };
-        PLACES.iter().all(|x| {
+        POSITIONS.iter().all(|x| {
             within(&actual.stiffness, *x, Sample::stiffness(*x))
                 && within(&actual.damping, *x, Sample::damping(*x))
         })
@@ -49,7 +49,7 @@ fn known_functions_lie_within_their_bands_in_nine_of_ten_trials() {
 fn without_noise_the_functions_are_found_to_the_accuracy_of_their_splines() {
     let exact = Sample::default().exact();
     let actual = identified(&exact);
-    for x in PLACES {
+    for x in POSITIONS {
         let [k, d] = [&actual.stiffness, &actual.damping].map(|function| function.at(x).value);
         assert!((k / Sample::stiffness(x) - 1.0).abs() < 5e-4, "{x}: {k}");
         assert!((d / Sample::damping(x) - 1.0).abs() < 5e-3, "{x}: {d}");
@@ -220,7 +220,7 @@ fn a_recording_of_two_thirds_of_the_instants_has_the_functions_of_the_whole_one(
         };
         let actual = identified(&part);
         assert!(actual.misfit < 1.2, "{seed}: {}", actual.misfit);
-        for x in PLACES {
+        for x in POSITIONS {
             let k = actual.stiffness.at(x).value;
             assert!(
                 (k / Sample::stiffness(x) - 1.0).abs() < 0.1,

@@ -28,7 +28,7 @@ pub struct RecordingVerdict {
 }
 
 impl RecordingVerdict {
-    /// The answer in words.
+    /// The answer as text.
     pub fn words(&self) -> String {
         self.answer
             .given("one spring with one dashpot of this mass and length")
@@ -99,6 +99,6 @@ pub struct Identification {
     pub freedom: f64,
     /// Whether a spring and a dashpot explain the recording; where they do not, standard errors, intervals and bands are NaN.
     pub verdict: RecordingVerdict,
-    /// What the recording does not say, and no fault of it.
+    /// Notes on what the recording does not determine, which is no fault of it.
     pub warnings: Vec<String>,
 }

@@ -9,10 +9,10 @@ use super::suspects::{Suspected, description};
 use super::types::{FittedMotion, Identification, RecordingVerdict};
 use crate::estimation::Answer;
 
-/// Places of a function at which its sign is looked at.
-const PLACES: usize = 41;
+/// The number of arguments at which the sign of a function is examined.
+const POSITIONS: usize = 41;
 
-/// The doubt about a motion with so many corners.
+/// The doubt about a motion with `count` corners.
 fn of_corners(count: usize) -> String {
     format!(
         "the motion has {count} corners, as where a machine reverses at a constant rate, or values that are far from both neighbours: the fitted \
@@ -43,16 +43,16 @@ fn is_steady(motion: &FittedMotion) -> bool {
     within < SHARE * all
 }
 
-/// Functions that are surely negative somewhere, which none of a passive body is.
+/// The doubts about functions that are significantly negative somewhere, which is impossible for a passive body.
 fn negative(result: &Identification) -> Vec<String> {
     let mut doubts = Vec::new();
     for (name, _, function) in result.functions() {
         let is_negative = function
-            .positions(PLACES)
+            .positions(POSITIONS)
             .into_iter()
             .map(|x| function.at(x).interval[1] < 0.0);
         let count = is_negative.filter(|is_negative| *is_negative).count();
-        if count == PLACES {
+        if count == POSITIONS {
             doubts.push(format!(
                 "{name}(·) is negative: reverse the sign of the force or of the extension"
             ));
@@ -65,11 +65,11 @@ fn negative(result: &Identification) -> Vec<String> {
     doubts
 }
 
-/// What a recording does not say of a body, and no fault of it.
+/// Notes on what a recording does not determine, which is no fault of it.
 pub fn notes(result: &Identification, recording: &Recording) -> Vec<String> {
     let is_undetermined = |function: &Function| {
         function
-            .positions(PLACES)
+            .positions(POSITIONS)
             .into_iter()
             .all(|x| function.at(x).holds(0.0))
     };
@@ -81,7 +81,7 @@ pub fn notes(result: &Identification, recording: &Recording) -> Vec<String> {
     undetermined.chain(mass).collect()
 }
 
-/// What a verdict follows from, beside the functions that were identified.
+/// The evidence for a verdict in addition to the identified functions.
 pub struct Evidence<'a> {
     pub recording: &'a Recording,
     /// The splines of extension and force.
@@ -156,5 +156,5 @@ impl Evidence<'_> {
     }
 }
 
-/// A misfit above this is larger than the noise: what a spring and a dashpot leave of the recording.
+/// A misfit above this is more than noise: a spring and a dashpot do not explain the recording.
 const MOST_MISFIT: f64 = 2.0;

@@ -174,7 +174,7 @@ impl<'a> Choice<'a> {
             head: self.head,
             roles: &self.roles,
         };
-        // What needs a dimension that is not stated gives way to what can be read.
+        // Columns that need a dimension which is not stated count only where no other can be read.
         let mut possible = candidates.to_vec();
         if candidates
             .iter()
@@ -312,7 +312,7 @@ fn has_numbers(head: &Head, candidate: &Named) -> bool {
     values.any(f64::is_finite)
 }
 
-/// The question which of some readings is meant.
+/// The question which of several readings is the right one.
 fn question(head: &Head, message: String, options: Vec<String>) -> Diagnostic {
     let mut hint = format!("choose one: {}", options.join(", or "));
     if head.table.is_text {

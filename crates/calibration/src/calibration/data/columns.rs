@@ -10,7 +10,7 @@ use crate::error::Diagnostic;
 use crate::material::parameters::{StrainMeasure, StressMeasure};
 use crate::units::{self, Dimension};
 
-/// A test begins at a stretch of 1; a test that begins beyond this factor of it may be in percent.
+/// Tests begin at a stretch of about 1: values that begin above this may be in percent.
 const AT_REST: f64 = 10.0;
 
 /// The factor from a column of strains or displacements to a ratio; stretches without a unit are plain ratios where they begin near 1.
@@ -245,12 +245,12 @@ pub fn strain_ratio(head: &Head) -> Faulty<f64> {
 
 /// The unit of a column, or the one that is stated for its kind where the column has none that is known.
 pub fn unit(head: &Head, column: &Column, kind: Kind) -> Option<String> {
-    let printed = || head.setting(&format!("{} unit", kind.name()), None);
+    let stated = || head.setting(&format!("{} unit", kind.name()), None);
     let unit = column.unit.clone();
     let is_known =
         |unit: &&String| units::is_known(unit) || units::factor(unit, Dimension::Ratio).is_ok();
     let known = unit.as_ref().filter(is_known).cloned();
-    known.or_else(|| printed().ok().flatten()).or(unit)
+    known.or_else(|| stated().ok().flatten()).or(unit)
 }
 
 /// A dimension of the specimen without the rounding of its arithmetic.
@@ -259,7 +259,7 @@ fn rounded(value: f64) -> f64 {
 }
 
 impl TableReading {
-    /// What some roles say, and the rows that are fitted.
+    /// The columns by their roles, and the first and last of the fitted rows.
     pub fn of(head: &Head, roles: &[Role], [first, last]: [usize; 2]) -> Self {
         let mut result = Self::default();
         for kind in [
@@ -293,8 +293,8 @@ impl TableReading {
 impl ColumnReading {
     fn of(head: &Head, roles: &[Role], (column, name): (&Column, String), role: &Role) -> Self {
         let key = format!("{} measure", role.kind.name());
-        let printed = || head.setting(&key, None).ok().flatten();
-        let measure = role.measure.map(str::to_owned).or_else(printed);
+        let stated = || head.setting(&key, None).ok().flatten();
+        let measure = role.measure.map(str::to_owned).or_else(stated);
         let measure = measure.unwrap_or_default();
         let divided_by = match &*measure {
             DISPLACEMENT => length(head, roles, role.axis())

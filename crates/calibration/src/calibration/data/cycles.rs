@@ -73,7 +73,7 @@ pub fn preconditioned(head: &Head, test: Test, far: f64) -> Faulty<Option<f64>> 
     Ok(Some(stretch - 1.0))
 }
 
-/// A swing of the strain smaller than this share of its whole range does not count.
+/// A swing of the strain below this share of its range does not count as a reversal.
 const SMALLEST_SWING: f64 = 0.05;
 /// Strains within this share of a branch's end belong to a hold there.
 const HOLD: f64 = 1e-3;

@@ -2,13 +2,13 @@
 
 use crate::statistics::{extremes, median};
 
-/// A spike is at least so many times the usual change of the change from row to row.
+/// The least height of a spike over the median of the second differences.
 const USUAL: f64 = 10.0;
-/// And at least this share of the range of all other stresses.
+/// Its least height as a share of the range of all other stresses.
 const SHARE: f64 = 0.05;
-/// A first or last row, which has neighbours on one side alone, must be off by this share of the range.
+/// The first row, which has neighbours on one side alone, must deviate by this share of the range.
 const SHARE_AT_ENDS: f64 = 0.2;
-/// Fewer rows than this have no usual change.
+/// Fewer rows do not determine the median.
 const FEWEST: usize = 12;
 
 /// The rows at which the stress leaves the curve of its neighbours and returns at once, while the strain goes on: those of tests that were
@@ -51,17 +51,17 @@ pub fn gross_rows(strains: &[f64], stresses: &[f64]) -> Vec<usize> {
     gross
 }
 
-/// The stress of a specimen that is whole, and of one that is torn, as shares of the largest.
-const WHOLE: f64 = 0.9;
+/// The least stress of an intact specimen, and the largest one of a torn specimen, as shares of the largest.
+const INTACT: f64 = 0.9;
 const TORN: f64 = 0.1;
-/// A specimen tears within so many rows, or while the strain goes on by this share of its range.
+/// A specimen tears within this many rows, or while the strain grows by this share of its range.
 const TEARING_ROWS: usize = 5;
 const GOES_ON: f64 = 0.01;
-/// The strain of a specimen that is not unloaded goes back by no more than this share of its range.
+/// The strain of a specimen that is not unloaded decreases by no more than this share of its range.
 const STANDS: f64 = 0.02;
 
-/// The rows behind a rupture: the stress falls from its largest value to next to nothing for good, and the strain does not go back. A
-/// specimen that relaxes falls slowly at one strain.
+/// The rows after a rupture: the stress falls quickly from its largest value to almost zero and stays there, while the strain does not
+/// decrease. In relaxation, the stress falls slowly.
 pub fn torn_rows(strains: &[f64], stresses: &[f64]) -> Vec<usize> {
     if stresses.len() < FEWEST {
         return Vec::new();
@@ -69,10 +69,10 @@ pub fn torn_rows(strains: &[f64], stresses: &[f64]) -> Vec<usize> {
     let at_rest = median(stresses.iter().copied().take(TEARING_ROWS));
     let size = |stress: &f64| (stress - at_rest).abs();
     let most = stresses.iter().map(size).fold(0.0, f64::max);
-    let Some(complete) = stresses.iter().rposition(|y| size(y) >= WHOLE * most) else {
+    let Some(last_intact) = stresses.iter().rposition(|y| size(y) >= INTACT * most) else {
         return Vec::new();
     };
-    let first = complete + 1;
+    let first = last_intact + 1;
     let torn = stresses[first..]
         .iter()
         .position(|y| size(y) <= TORN * most);
@@ -80,10 +80,10 @@ pub fn torn_rows(strains: &[f64], stresses: &[f64]) -> Vec<usize> {
         return Vec::new();
     };
     let [low, high] = extremes(strains.iter().copied());
-    let direction = (strains[complete] - strains[0]).signum();
-    let further = |row: usize| direction * (strains[row] - strains[complete]) / (high - low);
+    let direction = (strains[last_intact] - strains[0]).signum();
+    let further = |row: usize| direction * (strains[row] - strains[last_intact]) / (high - low);
     let stands = (first..strains.len()).all(|row| further(row) >= -STANDS);
-    let tears = torn - complete <= TEARING_ROWS || further(torn) > GOES_ON;
+    let tears = torn - last_intact <= TEARING_ROWS || further(torn) > GOES_ON;
     let is_last = stresses[torn..].iter().all(|y| size(y) <= TORN * most);
     if stands && tears && is_last && direction != 0.0 {
         (first..stresses.len()).collect()

@@ -22,7 +22,7 @@ pub struct Mounting {
 /// The state of a biaxial test's sheet without stress, relative to the state as it is mounted.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum RestState {
-    /// It carries nothing as mounted.
+    /// It is free of stress as mounted.
     #[default]
     AsMounted,
     /// It is stretched by these ratios as mounted.
@@ -53,7 +53,7 @@ impl Mounted {
         self.rest_state == RestState::Estimated
     }
 
-    /// The stretches as mounted that are stated; 1 where nothing is.
+    /// The stated stretches as mounted; 1 where none are stated.
     pub fn stated_stretches(&self) -> [f64; 2] {
         match self.rest_state {
             RestState::Stated(stretches) => stretches,

@@ -1,4 +1,4 @@
-//! Test data that are impossible, or hardly plausible.
+//! Test data that are impossible or implausible.
 
 use super::strain_column::StrainColumn;
 use super::test_data::{Observation, Test};
@@ -12,11 +12,11 @@ const SCATTER: f64 = 1e-3;
 /// Refuses data without information, and tests of compression that count pressing as positive.
 pub fn check_signs(head: &Head, observations: &[Observation], test: Test) -> Faulty<()> {
     let strains = || observations.iter().map(Observation::strain);
-    let says_nothing = observations.iter().all(|one| one.stress == 0.0)
+    let is_zero = observations.iter().all(|one| one.stress == 0.0)
         || observations
             .iter()
             .all(|one| one.strains.iter().all(|x| *x == 0.0 || x.is_nan()));
-    if says_nothing {
+    if is_zero {
         let hint = "look at the columns and their units";
         return Err(head.fault(0..0, "all strains or all stresses are zero", hint));
     }
@@ -40,13 +40,13 @@ pub fn check_signs(head: &Head, observations: &[Observation], test: Test) -> Fau
     Ok(())
 }
 
-/// A stress at zero strain, where nothing was subtracted: a preload, or a load cell that was not set to zero.
+/// The warning about a stress at zero strain where none was subtracted: a preload, or a load cell that was not set to zero.
 pub fn stress_at_rest(head: &Head, observations: &[Observation]) -> Option<Diagnostic> {
     /// Rows by whose second differences noise is estimated.
     const ROWS: usize = 12;
     /// Standard deviations, and a share of the largest stress, below which a stress counts as zero.
-    const CLEARLY: f64 = 4.0;
-    const NOTHING: f64 = 0.005;
+    const SIGNIFICANT: f64 = 4.0;
+    const NEGLIGIBLE: f64 = 0.005;
     /// A strain below this share of the largest counts as zero.
     const AT_REST: f64 = 1e-3;
     let strain = farthest(observations.iter().map(Observation::strain)).abs();
@@ -68,7 +68,7 @@ pub fn stress_at_rest(head: &Head, observations: &[Observation]) -> Option<Diagn
         .strains
         .iter()
         .all(|x| x.is_nan() || x.abs() <= AT_REST * strain);
-    let acts = first.stress.abs() > (CLEARLY * noise).max(NOTHING * stress);
+    let acts = first.stress.abs() > (SIGNIFICANT * noise).max(NEGLIGIBLE * stress);
     (rows.len() >= 5 && is_at_rest && acts).then(|| {
         let message = format!(
             "{}: at the first row the strain is zero, but the stress is {:.2} % of the largest, more than its scatter",
@@ -81,7 +81,7 @@ pub fn stress_at_rest(head: &Head, observations: &[Observation]) -> Option<Diagn
     })
 }
 
-/// Strains that are so large that they may be in percent, or that begin as stretches do.
+/// The warning about strains that are so large that they may be in percent, or that begin at 1 as stretches do.
 pub fn implausible(
     head: &Head,
     strain: StrainColumn,

@@ -47,7 +47,7 @@ pub const KEYS: [&str; 32] = [
     "force zero",
 ];
 impl TestData {
-    /// Reads a file; `reading` supplements the file's own statements, by [`KEYS`].
+    /// Reads a file; `reading` has further statements by [`KEYS`], which supplement those of the file.
     ///
     /// # Errors
     /// [`Error::Input`] with file, line and reason; nothing is ever guessed.

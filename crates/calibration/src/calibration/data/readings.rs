@@ -7,7 +7,7 @@ use crate::document::Head;
 use crate::material::parameters::StrainMeasure;
 use crate::units::Dimension;
 
-/// A column whose name says what it may be.
+/// A column whose name indicates its role.
 #[derive(Clone, Copy)]
 pub struct Named {
     pub column: usize,
@@ -21,14 +21,14 @@ pub fn values(head: &Head, (column, factor): Scaled) -> Vec<f64> {
     rows.map(|(row, _)| row[column] * factor).collect()
 }
 
-/// The columns of a table as they may be read beside those that are chosen.
+/// The possible readings of the columns of a table, given the columns that are chosen already.
 pub struct Readings<'a> {
     pub head: &'a Head<'a>,
     pub roles: &'a [Role],
 }
 
 impl Readings<'_> {
-    /// Whether two columns say the same in one of the measures that they may have.
+    /// Whether two columns have the same values in one of their possible measures.
     pub fn agree(&self, first: &Named, other: &Named) -> bool {
         /// Differences below this share of the largest value are rounding.
         const ROUNDING: f64 = 5e-3;

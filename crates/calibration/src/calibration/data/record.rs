@@ -9,7 +9,7 @@ use super::zero::Beginning;
 use crate::document::{Faulty, Head};
 use crate::units::{self, Dimension};
 
-/// The key of the place where the specimen begins to be stretched, in a file or on the command line.
+/// The key of the displacement or force at which stretching begins, in a file or on the command line.
 pub const ZERO: &str = "zero";
 
 /// A table of displacements and forces.
@@ -36,7 +36,7 @@ pub struct Part {
     pub offset: f64,
     /// Which of them was found from the record, and is uncertain.
     pub found_zero: Option<FoundZero>,
-    /// Descriptions of what was done.
+    /// Descriptions of the choices that were made.
     pub remarks: Vec<String>,
 }
 
@@ -190,8 +190,8 @@ impl Part {
         Ok(())
     }
 
-    /// Takes the zero at a stated place of a branch, as a row and the part of the step behind it; a single row's
-    /// reading scatters, so that one of both is determined again with the law.
+    /// Takes the zero at a stated point of a branch, given as a row and the share of the step to the next one. A single row's reading
+    /// scatters, so that the strain or the stress there is determined again with the law.
     fn take_stated(
         &mut self,
         head: &Head,
@@ -325,13 +325,13 @@ fn cycles(count: usize) -> String {
     }
 }
 
-/// Where values first pass one, or where they fall, its opposite: compression may be stated without its sign.
+/// Where values first pass a wanted one, or, where they fall, its negative: compression may be stated without its sign.
 fn either(values: &[f64], wanted: f64) -> Option<(usize, f64)> {
     let falls = values.last() < values.first();
     passes(values, wanted).or_else(|| passes(values, -wanted).filter(|_| falls && wanted > 0.0))
 }
 
-/// Where values first pass one, as a row and the part of the step behind it; up to what rounding of units leaves.
+/// Where values first pass a wanted one, as a row and the share of the step to the next one; up to the rounding of units.
 fn passes(values: &[f64], wanted: f64) -> Option<(usize, f64)> {
     const ROUNDING: f64 = 1e-9;
     let step = |row: usize| {

@@ -4,8 +4,8 @@
 //! s = 10⁻ᵈ     the last digit that the column has,   ρ² = mean of s²/12
 //! ```
 //!
-//! Zeros at the end count where the file has them. A strain that a machine was told to reach is exact, however few
-//! digits it is written with: such a column is not rounded, see [`WrittenColumn::is_commanded`].
+//! Trailing zeros count where the file has them. A strain that was commanded to the machine is exact, however few digits it is written
+//! with: such a column is not rounded, see [`WrittenColumn::is_commanded`].
 
 use crate::document::{Table, Written};
 
@@ -35,9 +35,9 @@ impl WrittenColumn {
         (squares.sum::<f64>() / self.values.len().max(1) as f64).sqrt()
     }
 
-    /// Whether nothing shows that the numbers of a strain were rounded: they follow at equal distances, their distances are all
-    /// multiples of more than the last digit, or the same ones come again while what was `measured` there goes to and fro. Where it
-    /// goes one way with the strain that stands still, the strain went on between the digits.
+    /// Whether the strains were commanded rather than measured and rounded: their distances are equal, or all are multiples of more than
+    /// the last digit, or equal strains recur with `measured` values that both rise and fall. Where these only rise or only fall at equal
+    /// strains, the strain changed by less than its last digit.
     pub fn is_commanded(&self, measured: &Self) -> bool {
         /// Numbers of more digits count as exact.
         const MOST: f64 = 1e15;

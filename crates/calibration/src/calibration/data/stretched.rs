@@ -5,8 +5,8 @@ use super::test_data::{Observation, TestData};
 use crate::material::parameters::StressMeasure;
 
 impl Observation {
-    /// The same in a test whose sheet was stretched along an axis before: λ = g λ, and P = P/g, because the cross-section of an
-    /// incompressible sheet is g times as large at rest.
+    /// The observation relative to a state at rest, of which the sheet was stretched by g along an axis as mounted: λ becomes g λ, and P
+    /// becomes P/g, because the cross-section of an incompressible sheet is g times as large at rest.
     pub(in crate::calibration) fn stretched(
         &self,
         axis: usize,
@@ -23,7 +23,7 @@ impl Observation {
 }
 
 impl TestData {
-    /// The test of a sheet that carries nothing as it is mounted, where its state at rest is estimated.
+    /// The test with its sheet taken as free of stress as mounted, where its state at rest would be estimated.
     pub(in crate::calibration) fn as_mounted(&self) -> Self {
         let mut test = self.clone();
         if test.mounted.estimates_stretches() {
@@ -32,7 +32,7 @@ impl TestData {
         test
     }
 
-    /// The test of a sheet that was stretched along both axes before.
+    /// The test relative to a state at rest, of which the sheet was stretched along both axes as mounted.
     #[must_use]
     pub(in crate::calibration) fn stretched(&self, [first, second]: [f64; 2]) -> Self {
         if [first, second] == [1.0; 2] {

@@ -17,7 +17,7 @@ pub enum Test {
     Uniaxial,
     /// Stretched along one axis, held across (pure shear).
     Planar,
-    /// Stretched alike along both axes.
+    /// Stretched equally along both axes.
     Equibiaxial,
     /// Stretched along both axes by different amounts.
     Biaxial,
@@ -47,9 +47,9 @@ impl Test {
 /// The side of rest to which a specimen was loaded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Loaded {
-    /// Stretched alone: short of rest it is slack.
+    /// Stretched only: at strains below zero it is slack.
     Stretched,
-    /// Pressed alone: beyond rest nothing touches it.
+    /// Pressed only: at strains above zero the plates do not touch it.
     Pressed,
     /// Both.
     Both,
@@ -70,7 +70,7 @@ impl Loaded {
         }
     }
 
-    /// A strain larger by so much; where the specimen would be slack, the strain at rest.
+    /// The strain increased by `by`; where the specimen would be slack, the strain at rest.
     fn moved(self, strain: f64, by: f64) -> f64 {
         match self {
             Self::Stretched => (strain + by).max(strain.min(0.0)),
@@ -283,8 +283,8 @@ impl TestData {
         })
     }
 
-    /// An observation with the zero that was found moved: strain, or stress in MPa, larger by so much. A specimen that is slack then is at
-    /// rest: it carries no load the other way.
+    /// An observation after a shift of the zero that was found: its strain, or its stress in MPa, is larger by `by`. A specimen that
+    /// would be slack is at rest: it carries no load of the opposite sign.
     pub fn moved(&self, observation: &Observation, by: f64) -> Observation {
         let mut moved = *observation;
         match self.found_zero {

@@ -20,12 +20,12 @@ const BEGINNING: f64 = 0.2;
 const FEWEST: usize = 12;
 /// More rows are thinned.
 const MOST: usize = 400;
-/// Rows on either side of a bend.
-const BESIDE: usize = 5;
-/// Least improvement by a bend, by F.
-const CLEARLY: f64 = 30.0;
+/// Fewest rows on either side of a bend.
+const SIDE_ROWS: usize = 5;
+/// The least F of the improvement by a bend.
+const SIGNIFICANT: f64 = 30.0;
 /// Values below this share of the largest stress count as zero.
-const NOTHING: f64 = 5e-4;
+const NEGLIGIBLE: f64 = 5e-4;
 
 /// A bend before the first row.
 const START: f64 = -1e-9;
@@ -35,7 +35,7 @@ const START: f64 = -1e-9;
 pub enum Beginning {
     /// Stress rises from zero at the first row.
     Clean,
-    /// The same at a strain that is not zero, as of a machine that counts its position from elsewhere.
+    /// The same at a strain that is not zero: the machine counts its position from another point.
     Elsewhere(f64),
     /// The specimen was slack.
     Slack {
@@ -87,7 +87,7 @@ impl Beginning {
         let is_unloaded = match Self::search(strains, stresses) {
             Some(Self::Clean) => true,
             Some(shown) => return shown,
-            None => stresses[0].abs() <= NOTHING * largest,
+            None => stresses[0].abs() <= NEGLIGIBLE * largest,
         };
         match strains {
             [first, .., last] if is_unloaded && first.abs() > NEAR * (last - first).abs() => {
@@ -97,13 +97,13 @@ impl Beginning {
         }
     }
 
-    /// The beginning by curves that are fitted to it, `Clean` where the first row has no stress within its noise; `None` where they tell nothing.
+    /// The beginning by curves that are fitted to it, `Clean` where the first row has no stress within its noise; `None` where they determine nothing.
     fn search(strains: &[f64], stresses: &[f64]) -> Option<Self> {
         let (first, last) = (*strains.first()?, *strains.last()?);
         let direction = (last - first).signum();
-        let still = median(stresses.iter().copied().take(BESIDE));
-        let top = farthest(stresses.iter().map(|y| y - still));
-        let rises = |y: &f64| (y - still) / top > BEGINNING;
+        let initial = median(stresses.iter().copied().take(SIDE_ROWS));
+        let top = farthest(stresses.iter().map(|y| y - initial));
+        let rises = |y: &f64| (y - initial) / top > BEGINNING;
         let rows = stresses.iter().position(rises)? + 1;
         if rows < FEWEST || top == 0.0 {
             return None;
@@ -160,7 +160,7 @@ impl Beginning {
         let columns = columns(x, START);
         let error = (inverse(&columns.tr_mul(&columns), 1e-13)?[(0, 0)] * variance).sqrt();
         let (at_rest, slope) = (plain.coefficients[0], plain.coefficients[1]);
-        if at_rest.abs() <= 4.0 * error + NOTHING {
+        if at_rest.abs() <= 4.0 * error + NEGLIGIBLE {
             return Some(Self::Clean);
         }
         let (back, stress) = (width * at_rest / slope, at_rest * top);
@@ -176,21 +176,21 @@ impl Beginning {
 /// The bend, its standard error and the level before it, where the specimen was slack.
 fn slack(x: &[f64], y: &DVector<f64>, plain: &Bent) -> Option<(f64, f64, f64)> {
     let n = x.len();
-    if (plain.sum / n as f64).sqrt() < NOTHING {
+    if (plain.sum / n as f64).sqrt() < NEGLIGIBLE {
         return None;
     }
     let sum = |bend: f64| bent(x, y, bend).map_or(f64::INFINITY, |result| result.sum);
-    let inner = BESIDE..n.checked_sub(BESIDE)?;
+    let inner = SIDE_ROWS..n.checked_sub(SIDE_ROWS)?;
     let best = inner.map(|row| (sum(x[row]), row));
     let (_, row) = best.min_by(|a, b| a.0.total_cmp(&b.0))?;
     let bend = golden(&sum, [x[row - 1], x[row + 1]]);
     let result = bent(x, y, bend)?;
     let variance = result.sum / (n - 4) as f64;
-    if plain.sum - result.sum < CLEARLY * variance {
+    if plain.sum - result.sum < SIGNIFICANT * variance {
         return None;
     }
     let before: Vec<usize> = (0..n).filter(|row| x[*row] < bend).collect();
-    if before.len() < BESIDE {
+    if before.len() < SIDE_ROWS {
         return None;
     }
     // The force before the bend must not rise: neither by more than noise nor by a fiftieth of what follows.
@@ -222,7 +222,7 @@ fn slack(x: &[f64], y: &DVector<f64>, plain: &Bent) -> Option<(f64, f64, f64)> {
     Some((bend, error, result.coefficients[0]))
 }
 
-/// The least value of a function between two places, to a millionth of their distance.
+/// The minimum of a function between two arguments, to a millionth of their distance, by golden sections.
 fn golden(value: &dyn Fn(f64) -> f64, [mut low, mut high]: [f64; 2]) -> f64 {
     const SHARE: f64 = 0.618_033_988_749_894_9;
     for _ in 0..30 {

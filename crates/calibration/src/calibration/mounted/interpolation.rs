@@ -18,7 +18,7 @@ pub struct Interpolation {
     inverse: DMatrix<f64>,
 }
 
-/// The functions of the interpolation at one place.
+/// The values of the functions of the interpolation at some strains.
 pub struct Basis(Vec<f64>);
 
 impl Basis {

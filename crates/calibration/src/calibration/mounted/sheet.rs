@@ -50,7 +50,7 @@ fn groups(mounting: &Mounting, axis: usize, end: usize) -> Vec<String> {
 }
 
 impl MountedSheet {
-    /// The sheet of a mounting whose cells are halved so many times.
+    /// The sheet of a mounting, with cells that are halved `halvings` times.
     pub fn new(mounting: Mounting, halvings: usize) -> Self {
         let cells = match mounting.shape {
             Shape::Cruciform { .. } => CELLS / 2,

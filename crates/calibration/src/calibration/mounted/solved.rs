@@ -19,7 +19,7 @@ const MOST_ROUNDS: usize = 20;
 /// A law that has settled with the sheet.
 pub struct Reached {
     law: &'static Law,
-    /// Its values, and behind them those of the state at rest.
+    /// Its values, followed by those of the state at rest.
     pub values: Vec<f64>,
     /// What the middle of the sheet carries by them.
     pub middle: Middle,
@@ -92,9 +92,9 @@ impl Solved {
         Ok(middle)
     }
 
-    /// The values of a law that is near to the middle of an isotropic one, and near to this law itself at the strains around the tines, which no
-    /// homogeneous test has: extrapolated to them, laws that are alike in the middle differ by orders of magnitude. Exponents are halved until
-    /// the sheet has forces of the size of those of the isotropic law.
+    /// The values of a law fitted to the stresses of the middle by an isotropic law, and to the stresses of that law at the strains around the
+    /// tines. No homogeneous test has such strains: extrapolated to them, laws that agree in the middle differ by orders of magnitude.
+    /// Exponents are halved until the forces of the sheet are of the size of those of the isotropic law.
     pub fn extended(
         &mut self,
         isotropic: &Reached,
@@ -157,8 +157,9 @@ impl Solved {
         of_test.collect()
     }
 
-    /// The values of a law that settle with the sheet, until forces change by less than a share of the largest one. They change by a share of their size, which becomes larger where the sum of squares
-    /// falls and smaller where it does not.
+    /// The values of a law after alternate solutions of the sheet and fits of the law, until forces change by less than the share `until` of the
+    /// largest one. In each round values change by at most a share of their size, which is doubled where the sum of squares falls and halved
+    /// where it does not.
     pub fn settled(
         &mut self,
         law: &'static Law,
@@ -213,8 +214,8 @@ impl Solved {
         Ok(best.expect("a round"))
     }
 
-    /// The values that settle from some, or from those that are nearest to the middle which they lead to, while these are better: where a
-    /// family of fibres carries nothing, or lies along an axis, nothing depends on it to first order.
+    /// The values to which the iteration converges from `begin`, or from a fit to the middle that these lead to, as long as this is better:
+    /// where a family of fibres carries no load, or lies along an axis, stresses do not depend on it to first order.
     pub fn nearly_settled(
         &mut self,
         law: &'static Law,

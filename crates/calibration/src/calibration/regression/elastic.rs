@@ -19,7 +19,7 @@ use crate::material::registry::Law;
 /// little within one that its parameters do not feel it.
 const BINS: usize = 2000;
 
-/// A law whose parameters are the values, and behind them the zeros that are found.
+/// A law as a model of tests. Its values are the parameters, followed by the zeros that are found with it.
 #[derive(Clone)]
 pub struct Elastic<'a> {
     law: &'static Law,
@@ -31,13 +31,13 @@ pub struct Elastic<'a> {
     observations: Vec<Observation>,
     /// How many values are the law's.
     law_values: usize,
-    /// Zeros whose values stand behind those of the law.
+    /// Zeros whose values follow those of the law.
     zeros: Vec<Zero>,
-    /// What the stresses have beside those of the law.
+    /// The part of the stresses in addition to those of the law.
     linear: Option<Arc<Linear>>,
     /// A stress to draw from: the secant of the data, Σ |σ| |x| / Σ x², in MPa.
     pub stiffness: f64,
-    /// The least size of each parameter that counts.
+    /// The least significant size of each parameter.
     least: Vec<f64>,
 }
 
@@ -113,8 +113,8 @@ impl<'a> Elastic<'a> {
         }
     }
 
-    /// The same with a part that is linear in the values about some of them; `linear` are its derivatives at an observation of a test, and
-    /// how many times larger what was measured is.
+    /// The same with a part that is linear in the values about `at`; `linear` returns its derivatives at an observation, and the ratio of the
+    /// measured stress to that of the observation.
     pub fn with_linear(
         mut self,
         at: Vec<f64>,
@@ -136,8 +136,8 @@ impl<'a> Elastic<'a> {
         }
     }
 
-    /// The same bent along the way to other values so that the stresses there are the measured ones of `other`; `sizes` are those of the
-    /// values.
+    /// The same with a part that is quadratic in the direction of other values, by which the stresses there are the measured ones of `other`;
+    /// `sizes` are those of the values.
     pub fn bent(self, values: &[f64], other: &Elastic, sizes: &[f64]) -> Self {
         let Some(Linear { at, rows, .. }) = self.linear.as_deref() else {
             return self;
@@ -281,13 +281,13 @@ impl Response for Elastic<'_> {
         })
     }
 
-    /// A value that a bound holds may lie elsewhere, as far as the data say: the others are as uncertain as if it were free. Only what
-    /// bounds leave no room is known, and what nothing depends on to first order.
+    /// A value at a bound would lie elsewhere by the data: the others are as uncertain as if it were free. Fixed are only values whose bounds
+    /// are equal, and those on which the stresses do not depend to first order.
     fn estimated(&self, values: &[f64], bounds: &[[f64; 2]]) -> Estimated {
         let mut fixed: Vec<bool> = bounds.iter().map(|[low, high]| low == high).collect();
         let mut at_bound = at_bound(values, bounds, [1e-9, 1e-300]);
         for (index, parameter) in self.build(values).1.parameters.iter().enumerate() {
-            // Beyond a limit that depends on others, nothing changes.
+            // A law may limit a parameter by others: beyond the limit, its value does not change.
             let mut outside = values.to_vec();
             outside[index] *= 1.0 + 1e-6;
             let is_limited = self.build(&outside).1.parameters[index].value != outside[index];
@@ -310,7 +310,7 @@ impl Misfit<Elastic<'_>> {
         Self::new(self.response.thinned(count), self.weighting)
     }
 
-    /// The values of some parameters that are stresses beside all others, by linear least squares.
+    /// Sets those parameters that are stresses, given all others, by linear least squares.
     pub fn complete(&self, values: &mut [f64], stresses: &[usize]) -> Option<()> {
         let mut others = values.to_vec();
         stresses.iter().for_each(|index| others[*index] = 0.0);

@@ -1,4 +1,4 @@
-//! What a model of stresses has beside those of a law: parts that are linear, or quadratic along one direction, in its values.
+//! Parts of a model of stresses in addition to those of its law: linear in its values, or quadratic along one direction.
 
 /// A part of the stresses that is linear in the values: Σ ∂σᵢ/∂pⱼ (pⱼ − pⱼ₀).
 #[derive(Debug)]
@@ -7,7 +7,7 @@ pub struct Linear {
     pub at: Vec<f64>,
     /// The derivatives of each row in MPa.
     pub rows: Vec<Vec<f64>>,
-    /// What is quadratic along one direction: Dᵢ (w · (p − p₀))².
+    /// A part that is quadratic along one direction: Dᵢ (w · (p − p₀))².
     pub bend: Option<Bend>,
 }
 

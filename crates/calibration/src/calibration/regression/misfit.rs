@@ -27,7 +27,7 @@ pub struct Row {
     pub stress: f64,
     /// How many observations it is the mean of.
     pub count: f64,
-    /// What was measured over what stands for it: the noise of the latter is so many times smaller.
+    /// The measured stress over the one that is fitted in its place, whose noise is smaller by this factor.
     pub factor: f64,
     /// The weight of its residual: that of one observation times √count.
     pub weight: f64,
@@ -47,13 +47,13 @@ impl Row {
         }
     }
 
-    /// An observation's own weight.
+    /// The weight of one observation.
     pub fn observation_weight(&self) -> f64 {
         self.weight / self.count.sqrt()
     }
 }
 
-/// How near to its bound a value is held by it where the search ends a little inside: a share, and the least size that counts.
+/// The distance to a bound within which a value counts as at the bound: a share of its size, and the least size.
 const AT_BOUND: [f64; 2] = [1e-6, 1e-9];
 
 /// What is estimated of some values.
@@ -62,7 +62,7 @@ pub struct Estimated {
     pub at_bound: Vec<bool>,
     /// Which of them are not estimated at all.
     pub fixed: Vec<bool>,
-    /// The least size of each that counts.
+    /// The least significant size of each.
     pub least: Vec<f64>,
 }
 
@@ -80,7 +80,7 @@ pub trait Response: Clone + Sync {
     /// The tests as they are written.
     fn data(&self) -> &[TestData];
 
-    /// What is fitted of them, by weights of one.
+    /// The rows that are fitted, with weights of one.
     fn rows(&self) -> Vec<Row>;
 
     /// The law at some values: that of long times, or of the first loading.
@@ -97,7 +97,7 @@ pub trait Response: Clone + Sync {
         Cow::Borrowed(self.data())
     }
 
-    /// Zeros that are values, behind all others.
+    /// Zeros that are values, after all others.
     fn zeros(&self) -> &[Zero] {
         &[]
     }

@@ -11,7 +11,7 @@ use crate::units::Dimension;
 
 /// Points above this number are thinned while starts are compared; the last improvement uses all of them.
 const THINNED: usize = 400;
-/// How many minima apart from each other are improved to the end.
+/// The number of distinct minima that are improved until convergence.
 const REFINED: usize = 3;
 /// Draws for each parameter that is no stress.
 const DRAWS: usize = 80;
@@ -46,7 +46,7 @@ pub struct Minimum {
     pub rival: Option<Rival>,
 }
 
-/// A minimum beside the best one.
+/// Another minimum than the best one.
 #[derive(Clone, Debug)]
 pub struct Rival {
     pub values: Vec<f64>,
@@ -54,11 +54,11 @@ pub struct Rival {
     pub worse: f64,
 }
 
-/// A minimum whose sum of squares is so many times that of the best one is no rival, however few the data are.
+/// A minimum is no rival where its sum of squares is more than this multiple of the best one, however few the data are.
 const FAR: f64 = 5.0;
 
 impl Search<'_> {
-    /// The parameters of the smallest sum of squares from so many starts; `None` where none describe the data at all.
+    /// The parameters with the smallest sum of squares from `starts` starts; `None` where none describe the data at all.
     pub fn minimum(&self, starts: usize) -> Option<Minimum> {
         let thinned = self.misfit.thinned(THINNED);
         let starts = self.spread(self.starts(&thinned), starts);
@@ -75,7 +75,7 @@ impl Search<'_> {
             self.bounds,
             values.min_by(|a, b| sum(a).total_cmp(&sum(b)))?,
         );
-        // Another minimum counts as one when it is still elsewhere after the same care.
+        // Another minimum counts only where it is still a different one after the same improvement.
         let least = sum_of_squares(&thinned, &values);
         let of_law = self.of_law(values.clone());
         let elsewhere = |result: &Vec<f64>| self.differs(result, &of_law);
@@ -116,7 +116,7 @@ impl Search<'_> {
         ordered(self.parameters, self.bounds, values)
     }
 
-    /// The best of some minima that lie apart from each other; one that is far above the best cannot become it.
+    /// The best of some distinct minima, without those whose sum of squares is so large that they cannot become the best.
     fn apart(&self, minima: &[Candidate]) -> Vec<Vec<f64>> {
         const ABOVE: f64 = 1.2;
         let mut chosen: Vec<Vec<f64>> = Vec::new();
@@ -179,7 +179,7 @@ impl Search<'_> {
         pairs.enumerate().map(draw).collect()
     }
 
-    /// Improves parameters until they are a minimum, from where those that are stresses are the best ones beside the others.
+    /// Improves parameters until they are a minimum; those that are stresses begin at their best values given the others.
     fn refine(&self, values: Vec<f64>) -> Option<Vec<f64>> {
         let mut linear = values.clone();
         let completed = self.misfit.complete(&mut linear, &self.stresses());
@@ -198,7 +198,7 @@ impl Search<'_> {
             .collect()
     }
 
-    /// Whether a parameter of another minimum is a tenth away, or by what counts where it is about zero.
+    /// Whether a parameter of another minimum differs by a tenth of its size, or of its least significant size.
     pub fn differs(&self, other: &[f64], values: &[f64]) -> bool {
         const FAR: f64 = 0.1;
         let stiffness = self.misfit.response.stiffness;
@@ -211,8 +211,8 @@ impl Search<'_> {
     }
 }
 
-/// Terms of a sum of powers in the order of their exponents, where bounds allow it: the same fit always has the same face. Values behind
-/// those of the law stay.
+/// Values with the terms of a sum of powers in the order of their exponents, where bounds allow it, so that equal fits have equal parameters.
+/// Values after those of the law stay.
 pub fn ordered(parameters: &[Parameter], bounds: &[[f64; 2]], values: Vec<f64>) -> Vec<f64> {
     let keys = parameters.iter().map(|parameter| parameter.key);
     let count = keys.filter(|key| key.starts_with("alpha_")).count();

@@ -3,7 +3,7 @@
 use crate::calibration::data::{FoundZero, Observation, TestData};
 use crate::statistics::{Estimate, farthest};
 
-/// What of the state at rest is found with the law: its value, behind those of the law, is 1 + by/scale.
+/// A zero, or a stretch as mounted, that is found with the law: its value, after those of the law, is 1 + by/scale.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Zero {
     /// The zero that was found in the record of a test.

@@ -1,4 +1,4 @@
-//! Tests as histories: what was measured over time, and the stress of a viscous material that went the same way.
+//! Tests as histories: what was measured over time, and the stress of a viscous material with the same strains.
 //!
 //! ```text
 //! S = S∞ + Σ Qᵢ,   Q̇ᵢ + Qᵢ/τᵢ = βᵢ Ṡ∞,   βᵢ = gᵢ/(1 − Σ g),   P = λ S                      [MPa]
@@ -6,7 +6,7 @@
 //!
 //! Strains are straight lines between the rows of a file. A step in which the stretch changes by more than [`FINE`] is divided, and in
 //! each part S∞ changes evenly, where the recursion of [`ViscousMaterial::recursions`] is exact: it is the one by which
-//! motions are computed. Edges that are free stay free: where the law has no stress, nothing relaxes.
+//! motions are computed. Free edges stay free of stress, because the stress that relaxes is proportional to that of the law.
 
 use crate::calibration::data::{Observation, TestData};
 use crate::error::Error;
@@ -32,7 +32,7 @@ pub struct State {
     pub count: f64,
 }
 
-/// A place on the way.
+/// A point of the history at which the stress is computed.
 #[derive(Clone, Copy, Debug)]
 struct Node {
     observation: Observation,
@@ -45,7 +45,7 @@ struct Node {
 /// The history of a test along one axis.
 #[derive(Clone, Debug)]
 pub struct History {
-    /// The test's place among all.
+    /// The number of the test.
     pub test: usize,
     /// What was measured, in the order of time.
     pub states: Vec<State>,
@@ -164,7 +164,7 @@ fn times(data: &TestData) -> Result<&[f64], Error> {
     })
 }
 
-/// Goes on to an observation in steps that are fine enough; a sudden one is a single step.
+/// Adds nodes up to an observation, in steps that are fine enough; a sudden change is a single step.
 fn add_steps(nodes: &mut Vec<Node>, to: Observation, elapsed: f64) {
     let from = nodes[nodes.len() - 1].observation;
     let change = (to.strain() - from.strain()).abs();

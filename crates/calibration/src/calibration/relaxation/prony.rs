@@ -21,12 +21,12 @@ use crate::material::parameters::Parameter;
 use crate::material::registry::Law;
 use crate::material::viscosity::{Relaxation, ViscousMaterial};
 
-/// Relaxation times on the grid: so many in a decade, but within these numbers.
+/// Relaxation times on the grid: their number in a decade, and the limits of their number.
 const IN_A_DECADE: f64 = 4.0;
 const GRID: [usize; 2] = [6, 16];
 /// Starts that are improved.
 const STARTS: usize = 3;
-/// All shares together stay below this.
+/// The limit of the sum of all shares.
 pub const MOST_SHARED: f64 = 0.999;
 
 /// A law with a Prony series over some histories. Values are those of the law, then share and ln time in s of each term.
@@ -138,7 +138,7 @@ impl Response for Viscous<'_> {
 }
 
 impl Misfit<Viscous<'_>> {
-    /// The best values with so many terms within bounds, from some values of the law.
+    /// The best values with as many terms as there are bounds, from some values of the law.
     pub fn minimum(
         &self,
         laws: &[Vec<f64>],

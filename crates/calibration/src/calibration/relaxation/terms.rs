@@ -10,7 +10,7 @@ use crate::units::Dimension;
 pub enum Terms {
     /// As many as AICc asks for.
     Automatic,
-    /// So many.
+    /// This number.
     Exactly(usize),
 }
 
@@ -46,7 +46,7 @@ impl Terms {
     }
 }
 
-/// The parameters of a law with so many terms.
+/// The parameters of a law with `terms` terms.
 pub fn parameters(law: &[Parameter], terms: usize, [low, high]: [f64; 2]) -> Vec<Parameter> {
     let of_term = |[share, time]: [&'static str; 2]| {
         let share = Parameter {

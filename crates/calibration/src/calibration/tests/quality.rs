@@ -47,8 +47,8 @@ fn the_figures_of_a_fit_are_as_defined() {
             Weighting::Absolute => 1.0,
             Weighting::Relative => s.max(0.0016).recip(),
         });
-        let surprise = quality.noise.as_ref().unwrap().surprise();
-        let aicc = surprise - 2.0 * weights.iter().map(|w| w.ln()).sum::<f64>() + 10.0;
+        let deviance = quality.noise.as_ref().unwrap().deviance();
+        let aicc = deviance - 2.0 * weights.iter().map(|w| w.ln()).sum::<f64>() + 10.0;
         let is_measured = weighting == Weighting::Absolute;
         for (what, actual, expected) in [
             ("S", quality.sum_of_squares, squares),
@@ -113,14 +113,14 @@ fn two_parameters_have_the_uncertainty_of_linear_regression() {
         let correlation = actual.quality.correlation[(0, 1)];
         // C₀₁, whose true value is zero, has either sign and is not known to have it.
         assert!(!actual.quality.is_identifiable());
-        let message = &actual.quality.warnings;
-        let vague = message
+        let warnings = &actual.quality.warnings;
+        let vague = warnings
             .iter()
-            .find(|message| message.contains("not identifiable"));
-        assert!(vague.unwrap().contains("c01"), "{message:?}");
-        let close = message
+            .find(|warning| warning.contains("not identifiable"));
+        assert!(vague.unwrap().contains("c01"), "{warnings:?}");
+        let close = warnings
             .iter()
-            .any(|message| message.contains("hardly be distinguished"));
+            .any(|warning| warning.contains("hardly be distinguished"));
         assert_eq!(close, correlation.abs() >= 0.99, "{correlation}");
     }
 }
@@ -204,11 +204,11 @@ fn protocols_of_a_biaxial_test_support_the_tests_that_they_cover() {
     let data = [TestData::read(path, &reading).unwrap()];
     let actual = fitted("neo-hooke", &data);
     assert_eq!(actual.quality.untested, [Mode::Uniaxial, Mode::Planar]);
-    let message = &actual.quality.warnings;
+    let warnings = &actual.quality.warnings;
     let expected = "uniaxial and planar stresses are predictions that no data support";
     assert!(
-        message.iter().any(|message| message == expected),
-        "{message:?}"
+        warnings.iter().any(|warning| warning == expected),
+        "{warnings:?}"
     );
 }
 

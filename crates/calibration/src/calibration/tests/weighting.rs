@@ -65,12 +65,12 @@ impl Counts {
         let verdict = quality.verdict.unwrap().answer;
         let pairs = quality.estimates.iter().zip(truth);
         let held = pairs.filter(|(one, truth)| one.holds(**truth));
-        let message = usize::from(verdict.has_intervals());
+        let counted = usize::from(verdict.has_intervals());
         Self {
             systematic: usize::from(verdict == Answer::Systematic),
-            held: message * held.count(),
-            intervals: message * truth.len(),
-            vague: message * usize::from(!quality.is_identifiable()),
+            held: counted * held.count(),
+            intervals: counted * truth.len(),
+            vague: counted * usize::from(!quality.is_identifiable()),
         }
     }
 

@@ -1,4 +1,4 @@
-//! What a fit has left, judged alike for laws, Prony series and softening.
+//! The residuals of a fit, judged in the same way for laws, Prony series and softening.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -11,8 +11,8 @@ use crate::calibration::settings::{SMALLEST_SHARE, Weighting};
 use crate::material::HyperelasticLaw;
 use crate::statistics::{CurveNoise, Estimate, corrected_akaike_criterion};
 
-/// The size of the noise that the weights do not suit: one that is the same everywhere where they are relative, else one that is
-/// proportional to the stress.
+/// The size of the noise that the other weighting would suit: the same everywhere where weights are relative, else proportional to the
+/// stress.
 fn other_size(rows: &[Row], residual: &DVector<f64>, weighting: Weighting) -> DVector<f64> {
     if weighting == Weighting::Relative {
         return DVector::from_iterator(rows.len(), rows.iter().map(Row::observation_weight));
@@ -24,22 +24,22 @@ fn other_size(rows: &[Row], residual: &DVector<f64>, weighting: Weighting) -> DV
     modelled.map(|stress| stress.max(least))
 }
 
-/// What the residuals of a fit are.
+/// The statistics of the residuals of a fit.
 pub struct Judged {
-    /// Which values a bound holds.
+    /// Which values are at a bound.
     pub at_bound: Vec<bool>,
     /// Which values are not estimated at all.
     pub fixed: Vec<bool>,
-    /// Which values are stated, and no result of the fit.
+    /// Which values are stated rather than fitted.
     held: Vec<bool>,
-    /// `None` where nothing is estimated, or no freedom is left.
+    /// `None` where nothing is estimated, or there are no degrees of freedom.
     pub verdict: Option<Verdict>,
-    /// What the values are worth that are estimated; `None` likewise.
+    /// The noise, which gives the uncertainty of the estimated values; `None` likewise.
     pub noise: Option<CurveNoise>,
     /// The sum of squares of the residuals.
     sum_of_squares: f64,
     /// −2 ln of the likelihood of the measured stresses.
-    surprise: f64,
+    deviance: f64,
     rows: usize,
 }
 
@@ -76,7 +76,7 @@ impl Judged {
         });
         let (verdict, noise): (_, Option<CurveNoise>) = judged.unzip();
         let white = || rows * (sum_of_squares / rows).ln();
-        let of_residuals = noise.as_ref().map_or_else(white, CurveNoise::surprise);
+        let of_residuals = noise.as_ref().map_or_else(white, CurveNoise::deviance);
         // The residuals of a relative fit are those of the stresses times their weights.
         let weights = misfit.rows.iter().map(|row| row.observation_weight().ln());
         Self {
@@ -86,12 +86,12 @@ impl Judged {
             verdict,
             noise,
             sum_of_squares,
-            surprise: of_residuals - 2.0 * weights.sum::<f64>(),
+            deviance: of_residuals - 2.0 * weights.sum::<f64>(),
             rows: residual.len(),
         }
     }
 
-    /// Counts points that were gathered as many as their means are the less scattered; `square` is the weighted sum of squares of all of them.
+    /// Corrects the number of independent points where neighbouring ones were averaged; `square` is the weighted sum of squares of all points.
     pub fn count_gathered(&mut self, points: usize, square: f64) {
         let (rows, estimates) = (self.rows, self.fixed.len());
         if let Some(verdict) = &mut self.verdict
@@ -109,16 +109,16 @@ impl Judged {
     /// AICc of the rows, with the fitted values and the variance.
     pub fn aicc(&self) -> f64 {
         let fitted = self.held.iter().filter(|held| !**held).count();
-        corrected_akaike_criterion(self.surprise, (fitted + 1) as f64, self.rows as f64)
+        corrected_akaike_criterion(self.deviance, (fitted + 1) as f64, self.rows as f64)
     }
 
-    /// Whether they are noise.
+    /// Whether the residuals are noise.
     pub fn is_noise(&self) -> bool {
         self.verdict
             .is_some_and(|verdict| verdict.answer.has_intervals())
     }
 
-    /// The values with their uncertainty, NaN where a bound holds them, and their correlation.
+    /// The values with their uncertainty, NaN where they are at a bound, and their correlation.
     pub fn estimates(&self, values: &[f64]) -> (Vec<Estimate>, DMatrix<f64>) {
         let size = values.len();
         let mut correlation = DMatrix::from_element(size, size, f64::NAN);
@@ -135,9 +135,9 @@ impl Judged {
         let is_known = |(_, index): &(usize, &usize)| !self.at_bound[**index];
         for (i, row) in free.iter().enumerate().filter(is_known) {
             let unit = DVector::from_fn(free.len(), |j, _| f64::from(u8::from(i == j)));
-            // Of the interval: the mean of the covariances is mostly that of improbable noises whose lengths are large.
+            // From the interval, because the mean of the covariances is dominated by improbable noises with large lengths.
             let reach = noise.reach();
-            // Rounding makes the variance of what the data do not determine a negative one.
+            // By rounding, the variance of a value that the data do not determine may be negative.
             let standard_error = if error(i).is_finite() {
                 noise.half_width(&unit) / reach
             } else {

@@ -11,8 +11,8 @@ use crate::material::curve::Mode;
 use crate::material::stability::{SEARCHED, stable_range};
 use crate::statistics::{CurveNoise, Estimate, extremes, farthest};
 
-/// Whether the interval of an estimate does not hold zero.
-pub fn knows_sign(estimate: &Estimate) -> bool {
+/// Whether the interval of an estimate excludes the opposite sign.
+pub fn has_known_sign(estimate: &Estimate) -> bool {
     let [low, high] = estimate.interval;
     if estimate.value > 0.0 {
         low >= 0.0
@@ -32,11 +32,11 @@ pub struct StableRange {
     pub needed: [f64; 2],
 }
 
-/// But for rounding.
+/// One less rounding.
 const BARELY: f64 = 1.0 - 1e-9;
 
 impl StableRange {
-    /// Whether the law is stable as far as it should be, or as far as is looked for; pressing counts in uniaxial tests alone.
+    /// Whether the law is stable in the needed range, as far as stability is searched for; compression counts in uniaxial tests alone.
     pub fn is_enough(&self) -> bool {
         let ([low, high], [from, to]) = (self.stretches, self.needed);
         let [least, most] = SEARCHED;
@@ -65,11 +65,11 @@ pub struct Quality {
     pub aicc: f64,
     /// Largest |σᵢ − σ|/|σᵢ| in %, of the stresses above a hundredth of their test's largest.
     pub largest_relative_error_percent: f64,
-    /// What the residuals are; nothing is said where no parameter is estimated from them.
+    /// The verdict on the residuals; `None` where no parameter is estimated.
     pub verdict: Option<Verdict>,
-    /// One for each parameter; uncertainties are NaN where a bound holds it. They hold where [`Self::has_intervals`].
+    /// One for each parameter; uncertainties are NaN where it is at a bound. They are valid where [`Self::has_intervals`].
     pub estimates: Vec<Estimate>,
-    /// Whether a bound holds it, for each parameter.
+    /// Whether it is at a bound, for each parameter.
     pub at_bound: Vec<bool>,
     /// Whether it is held at a value that was stated or that no test determines, for each parameter.
     pub held: Vec<bool>,
@@ -79,7 +79,7 @@ pub struct Quality {
     pub zeros: Vec<MovedZero>,
     /// Correlation of the parameters.
     pub correlation: DMatrix<f64>,
-    /// The noise that makes the values uncertain which are estimated: parameters, and the zeros behind them.
+    /// The noise, which gives the uncertainty of the estimated values: parameters, followed by zeros.
     pub noise: Option<CurveNoise>,
     /// The stable ranges.
     pub stable: Vec<StableRange>,
@@ -98,7 +98,7 @@ impl Quality {
             .is_none_or(|verdict| verdict.answer.has_intervals())
     }
 
-    /// With the last estimates as those of zeros.
+    /// The same with the last estimates taken as those of zeros.
     pub(in crate::calibration) fn with_zeros(mut self, zeros: &[Zero]) -> Self {
         let parameters = self.estimates.len() - zeros.len();
         let of_zeros = self.estimates.drain(parameters..);
@@ -118,16 +118,16 @@ impl Quality {
         self.r_squared >= 0.0 || self.nmad_percent < FAR_PERCENT
     }
 
-    /// The number of independent points that tell as much of the noise.
+    /// The number of independent points with the same information on the noise.
     pub fn effective_points(&self) -> f64 {
         let effective = self.verdict.map(|verdict| verdict.effective_points);
         effective.unwrap_or(self.points as f64)
     }
 
-    /// Whether no fitted parameter is held by a bound or has an interval that holds zero.
+    /// Whether no fitted parameter is at a bound or has an interval that includes zero.
     pub fn is_identifiable(&self) -> bool {
         let mut pairs = self.estimates.iter().zip(&self.held);
-        pairs.all(|(estimate, held)| *held || knows_sign(estimate))
+        pairs.all(|(estimate, held)| *held || has_known_sign(estimate))
     }
 
     /// Whether the law is stable in the uniaxial, planar and equibiaxial tests as far as the data go.
@@ -136,10 +136,10 @@ impl Quality {
     }
 }
 
-/// The mean squares of weighted residuals that rounding of the stresses leaves, or that no test could tell from nothing, and
-/// that rounding of strains and stresses leaves.
+/// The mean squares of the weighted residuals by rounding of the stresses (at least a negligible one), and by rounding of strains and
+/// stresses.
 pub fn rounded(tests: &[TestData], law: &dyn HyperelasticLaw, weighting: Weighting) -> [f64; 2] {
-    const NOTHING: f64 = 1e-6;
+    const NEGLIGIBLE: f64 = 1e-6;
     let (mut sums, mut count) = ([0.0; 2], 0);
     for test in tests {
         let [strain, stress] = test.rounding;
@@ -154,8 +154,8 @@ pub fn rounded(tests: &[TestData], law: &dyn HyperelasticLaw, weighting: Weighti
             } else {
                 0.0
             };
-            let nothing = NOTHING * test.largest_stress;
-            let square = stress * stress + nothing * nothing;
+            let negligible = NEGLIGIBLE * test.largest_stress;
+            let square = stress * stress + negligible * negligible;
             let weight = weighting.weight_of(test, one.stress).powi(2);
             sums[0] += weight * square;
             sums[1] += weight * (square + by_strain.powi(2));

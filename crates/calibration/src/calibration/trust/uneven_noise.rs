@@ -1,4 +1,4 @@
-//! Noise that grows with the stress, and specimens that differ: what intervals of even noise do not hold.
+//! Noise that grows with the stress, and specimens that differ: intervals for noise of one size do not include either.
 
 use std::collections::BTreeSet;
 
@@ -8,13 +8,13 @@ use crate::calibration::settings::Weighting;
 use crate::material::HyperelasticLaw;
 use crate::statistics::cochran;
 
-/// Standard normal deviates beyond which something is no chance: one in a thousand, on both sides.
-const CLEARLY: f64 = 3.29;
+/// The standard normal deviate that is exceeded by chance in one of a thousand cases, on both sides.
+const SIGNIFICANT: f64 = 3.29;
 
-/// Fewer rows tell nothing of either.
+/// Fewest rows that are judged.
 const FEWEST: usize = 10;
 
-/// The law's stresses at the rows of a protocol, and how far the measured ones are from them, both by the weights of the fit.
+/// The law's stresses at the rows of a protocol, and the residuals, both times the weights of the fit.
 type Pairs = Vec<[f64; 2]>;
 
 /// The warnings of a fit whose residuals are judged: noise that grows where they are noise, and specimens that differ in any case.
@@ -47,7 +47,7 @@ fn uneven(quality: &Quality, weighting: Weighting) -> Option<String> {
     })
 }
 
-/// The pairs of each protocol of a test, a part that was pulled one way.
+/// The pairs of each protocol of a test.
 fn pairs(test: &TestData, law: &dyn HyperelasticLaw, weighting: Weighting) -> Vec<Pairs> {
     let pair = |one: &Observation| {
         let fitted = test.stress_of(law, one);
@@ -62,7 +62,7 @@ fn pairs(test: &TestData, law: &dyn HyperelasticLaw, weighting: Weighting) -> Ve
 }
 
 /// Whether specimens, or protocols, of one kind of test differ from the law by more than their noise. Only a user knows which of them are
-/// one specimen: a wrong law and specimens that differ make alike residuals.
+/// one specimen: the residuals of a wrong law and of specimens that differ look the same.
 fn specimens(
     tests: &[TestData],
     protocols: impl Fn(&TestData) -> Vec<Pairs>,
@@ -118,7 +118,7 @@ fn differing(groups: &[Pairs]) -> Option<Vec<f64>> {
     // χ² by Wilson's and Hilferty's cube root.
     let deviate = ((cochran(&factors) / freedom).cbrt() - 1.0 + 2.0 / (9.0 * freedom))
         / (2.0 / (9.0 * freedom)).sqrt();
-    (deviate > CLEARLY).then(|| factors.iter().map(|[factor, _]| *factor).collect())
+    (deviate > SIGNIFICANT).then(|| factors.iter().map(|[factor, _]| *factor).collect())
 }
 
 /// How many times the law's stress was measured, and its variance by the noise of the rows, neighbours of which may correlate.

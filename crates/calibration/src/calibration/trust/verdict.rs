@@ -1,4 +1,4 @@
-//! Whether what a fit leaves is the noise of a test.
+//! Whether the residuals of a fit are the noise of a test.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -12,16 +12,16 @@ use crate::statistics::{
 pub enum Answer {
     /// White noise.
     White,
-    /// Noise that correlates along the curves; the intervals hold that.
+    /// Noise that correlates along the curves, which the intervals take into account.
     Correlated,
-    /// A smooth pattern that no such noise makes: intervals say nothing.
+    /// A smooth pattern that such noise does not produce: intervals are meaningless.
     Systematic,
-    /// No more than the file's numbers were rounded by: there is no noise to make intervals of.
+    /// No more than the rounding of the file's numbers: there is no noise, and there are no intervals.
     Rounding,
 }
 
 impl Answer {
-    /// The answer in words.
+    /// The answer as text.
     pub fn words(self) -> &'static str {
         match self {
             Self::White => "white noise",
@@ -37,24 +37,23 @@ impl Answer {
     }
 }
 
-/// What the residuals are, with what the answer stands on.
+/// The verdict on residuals, with the figures on which it is based.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Verdict {
     /// The answer.
     pub answer: Answer,
-    /// Durbin and Watson's test over neighbours in the file or in strain, whichever is the less like white noise; `None` where
-    /// no neighbours are left.
+    /// Durbin and Watson's test over neighbours in the file or in strain, whichever is less probable for white noise; `None` where there
+    /// are no neighbours.
     pub durbin_watson: Option<DurbinWatson>,
     /// The correlation of neighbouring residuals.
     pub of_neighbours: f64,
-    /// How probable it is that noise follows a smooth curve as well as the residuals do; `None` where there are too few
-    /// points to tell.
+    /// The probability that noise follows a smooth curve as well as the residuals do; `None` where there are too few points.
     pub pattern_probability: Option<f64>,
-    /// The number of independent points that tell as much of the noise; all points where the residuals are no noise.
+    /// The number of independent points with the same information on the noise; all points where the residuals are not noise.
     pub effective_points: f64,
-    /// How many times the noise of one curve is larger than that of another; 1 where they are alike.
+    /// The largest noise of a curve over the smallest one; 1 where they do not differ.
     pub noise_ratio: f64,
-    /// Whether the noise is of another kind than the weights suit, even or proportional to the stress; the intervals hold that.
+    /// Whether the other weighting would suit the noise, which the intervals take into account.
     pub suits_other_weights: bool,
 }
 
@@ -105,24 +104,24 @@ fn percent(probability: f64) -> String {
     }
 }
 
-/// The probability below which white noise, or any noise, is not believed.
+/// The probability below which white noise, or any noise, is rejected.
 const DOUBTED: f64 = 0.01;
 
-/// What a fit leaves, in the order of its curves.
+/// The residuals of a fit along its curves.
 pub struct FitResiduals<'a> {
     /// The rows along each curve.
     pub curves: Vec<Rows>,
-    /// Derivatives of the residuals by the parameters that no bound holds.
+    /// Derivatives of the residuals with respect to the estimated parameters.
     pub design: &'a DMatrix<f64>,
     pub residual: &'a DVector<f64>,
     /// The size that the noise may have instead of being of one size.
     pub other_size: &'a DVector<f64>,
-    /// What rounding of the stresses leaves of the sum of squares, and that of strains and stresses.
+    /// The sum of squares by rounding of the stresses, and by rounding of strains and stresses.
     pub rounded: [f64; 2],
 }
 
 impl FitResiduals<'_> {
-    /// The verdict, and what the estimates are worth; `None` where nothing is estimated, or no freedom is left.
+    /// The verdict, and the noise; `None` where nothing is estimated, or there are no degrees of freedom.
     pub fn judge(&self) -> Option<(Verdict, CurveNoise)> {
         let estimates = self.design.ncols();
         if estimates == 0 || self.design.iter().any(|entry| !entry.is_finite()) {
@@ -173,7 +172,7 @@ impl FitResiduals<'_> {
         Some((verdict, noise))
     }
 
-    /// The sizes of noise along the curves that is not even, in the order in which neighbours are the nearest.
+    /// The sizes of noise that changes along the curves, in the order in which neighbours are the nearest.
     fn grown(&self, orders: &[Vec<Curve>], other: &DVector<f64>) -> Option<DVector<f64>> {
         let rough = |curves: &&Vec<Curve>| {
             let pairs = curves.iter().flat_map(|curve| curve.rows.windows(2));
@@ -283,7 +282,7 @@ fn orders(curves: &[Rows]) -> Vec<Vec<Curve>> {
     const EVEN: f64 = 2.0;
     let file = |rows: &Rows| Curve::even(rows.iter().map(|(row, _)| *row).collect());
     let files: Vec<Curve> = curves.iter().map(file).collect();
-    let strains: Vec<Curve> = curves.iter().cloned().map(Curve::of_places).collect();
+    let strains: Vec<Curve> = curves.iter().cloned().map(Curve::by_position).collect();
     let alike = |(a, b): (&Curve, &Curve)| {
         let falling = || b.rows.iter().rev().eq(&a.rows);
         let even = b.gaps.iter().all(|gap| (1.0 / EVEN..=EVEN).contains(gap));

@@ -1,13 +1,13 @@
 //! What a user must know before using a fit.
 
-use super::quality::{Quality, StableRange, knows_sign};
+use super::quality::{Quality, StableRange, has_known_sign};
 use crate::calibration::data::TestData;
 use crate::calibration::regression::Rival;
 use crate::material::curve::Mode;
 use crate::material::parameters::Parameter;
 use crate::statistics::f_tail;
 
-/// A minimum that is worse by less is told whatever the data.
+/// A rival minimum that is worse by less is always reported.
 const NEARLY: f64 = 0.05;
 
 /// The warnings of a fit that has another minimum.
@@ -71,7 +71,7 @@ fn uncertain(quality: &Quality, parameters: &[Parameter]) -> Vec<String> {
                 ": the intervals of the others treat it as free"
             };
             warnings.push(format!("{key} = {value:.4e} is at a bound{others}"));
-        } else if !quality.held[index] && !knows_sign(estimate) {
+        } else if !quality.held[index] && !has_known_sign(estimate) {
             vague.push(key);
         }
     }
@@ -84,7 +84,7 @@ fn uncertain(quality: &Quality, parameters: &[Parameter]) -> Vec<String> {
     warnings
 }
 
-/// The pair of parameters that are told apart worst.
+/// The pair of parameters with the largest correlation.
 fn correlated(quality: &Quality, parameters: &[Parameter]) -> Option<String> {
     let pairs = (0..parameters.len()).flat_map(|i| (0..i).map(move |j| (j, i)));
     let mut close: Vec<(f64, (usize, usize))> = pairs

@@ -206,12 +206,12 @@ fn sound_recordings_are_suspected_of_nothing() {
 /// Bands of steady vibrations are too narrow where there is much noise.
 #[test]
 fn a_steady_vibration_is_told() {
-    let message = |amplitudes: [f64; 2]| {
+    let is_steady = |amplitudes: [f64; 2]| {
         let recording = swinging_by(amplitudes, |x| 0.2 + 0.01 * x, |_| 0.04);
         let actual = identified(&recording);
         let mut doubts = actual.verdict.doubts.iter();
         doubts.any(|doubt| doubt.contains("steady vibration"))
     };
-    assert!(message([6.0, 0.0]));
-    assert!(!message([6.0, 4.0]));
+    assert!(is_steady([6.0, 0.0]));
+    assert!(!is_steady([6.0, 4.0]));
 }

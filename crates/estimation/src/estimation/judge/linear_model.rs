@@ -155,7 +155,7 @@ impl Model {
     /// The residuals of the markers in mm, after an ordinary regression.
     pub fn residual_rms(&self, rows: &Rows, nearest_field: &NearestField) -> f64 {
         let white = WhiteRegression::new(&self.design, &self.residual, None);
-        let fitted = white.left(&self.held, &self.slope, 1.0);
+        let fitted = white.residual_square(&self.held, &self.slope, 1.0);
         let count = 2.0 * rows.chosen.len() as f64;
         fitted.map_or(f64::NAN, |(square, _)| {
             (square / count).sqrt() * nearest_field.deviation()
@@ -236,7 +236,7 @@ impl Noise {
     fn likelihood(&self, model: &Model) -> Option<Likelihood> {
         let (square, effective) =
             self.regression(model)
-                .left(&model.held, &model.slope, self.variance)?;
+                .residual_square(&model.held, &model.slope, self.variance)?;
         let count = model.residual.len() as f64;
         let log_determinant = self
             .whitening

@@ -82,8 +82,8 @@ fn asks(text: &str, reading: &[(&str, &str)], count: usize) {
     let options = options(&question);
     assert_eq!(options.len(), count, "{question}");
     let answers = options.iter().map(|columns| {
-        let printed = [reading, &[("columns", columns)]].concat();
-        read(text, &printed).is_ok_and(|data| is_right(&data))
+        let answer = [reading, &[("columns", columns)]].concat();
+        read(text, &answer).is_ok_and(|data| is_right(&data))
     });
     assert_eq!(answers.filter(|right| *right).count(), 1, "{question}");
 }
