@@ -216,7 +216,10 @@ impl<'a> Fit<'a> {
         let mut merit = f64::INFINITY;
         for step in 0..MOST_STEPS {
             report(&format!("K(·) and D(·), step {}", step + 1));
-            let linearised = self.joint.linearise(&self.state).map_err(|_| unknown())?;
+            let linearised = self
+                .joint
+                .linearise(&self.state, &[])
+                .map_err(|_| unknown())?;
             if step < CHOICES {
                 let counts = [self.observations(), linearised.motion_count() as f64];
                 let from = &self.state.functions;

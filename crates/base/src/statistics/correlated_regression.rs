@@ -160,8 +160,8 @@ impl CorrelatedRegression<'_> {
     /// The correlations with a length between half of `spacing` and `longest` that a 95 % region of length and share holds, the
     /// likeliest first; nothing where they are not determined.
     pub fn plausible(&self, spacing: f64, longest: f64) -> Vec<CorrelatedNoise> {
-        let white = WhiteRegression::new(self.design, self.residual, None);
-        let white = white.score(self.held, self.slope);
+        let regression = WhiteRegression::new(self.design, self.residual, None);
+        let white = regression.score(self.held, self.slope);
         let (Some(white), Some(tried)) = (white, self.search(spacing, longest)) else {
             return Vec::new();
         };
@@ -180,14 +180,14 @@ impl CorrelatedRegression<'_> {
     /// All correlations that are tried, the likeliest first.
     fn search(&self, spacing: f64, longest: f64) -> Option<Vec<(Correlation, Score)>> {
         const STEP: f64 = 1.8;
-        let lengths = std::iter::successors(Some(0.6 * spacing), |length| Some(STEP * length));
-        let lengths: Vec<f64> = lengths.take_while(|length| *length <= longest).collect();
+        let geometric = std::iter::successors(Some(0.6 * spacing), |length| Some(STEP * length));
+        let lengths: Vec<f64> = geometric.take_while(|length| *length <= longest).collect();
         // Computed here once, before all threads need it.
         self.sites.order();
         let mut tried = self.grid(Decay::Exponential, &lengths);
         let length = tried.iter().min_by(likelier)?.0.length;
-        let around = [length / STEP, length, STEP * length];
-        let around = around.map(|length| length.min(longest));
+        let spaced = [length / STEP, length, STEP * length];
+        let around = spaced.map(|length| length.min(longest));
         tried.extend(self.grid(Decay::Smooth, &around));
         let best = *tried.iter().min_by(likelier)?;
         tried.extend(self.refined(best, STEP.sqrt(), longest));

@@ -143,8 +143,8 @@ impl Whitening {
             let mutual =
                 DMatrix::from_fn(before.len(), before.len(), |i, j| at(before[i], before[j]));
             // Positions that are twice in the data may make the matrix singular.
-            let weights = mutual.cholesky().map(|factor| factor.solve(&covariances));
-            let weights = weights.unwrap_or_else(|| DVector::zeros(before.len()));
+            let solved = mutual.cholesky().map(|factor| factor.solve(&covariances));
+            let weights = solved.unwrap_or_else(|| DVector::zeros(before.len()));
             let variance = (1.0 - covariances.dot(&weights)).max(1e-6);
             Row {
                 position: *position,

@@ -32,8 +32,8 @@ impl Curve {
     /// Rows in the order of their positions.
     pub fn by_position(mut positions: Vec<(usize, f64)>) -> Self {
         positions.sort_by(|a, b| a.1.total_cmp(&b.1));
-        let gaps = positions.windows(2).map(|pair| pair[1].1 - pair[0].1);
-        let gaps: Vec<f64> = gaps.collect();
+        let distances = positions.windows(2).map(|pair| pair[1].1 - pair[0].1);
+        let gaps: Vec<f64> = distances.collect();
         let mean = gaps.iter().sum::<f64>() / gaps.len() as f64;
         let mean = if mean > 0.0 { mean } else { 1.0 };
         Self {

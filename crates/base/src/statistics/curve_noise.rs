@@ -134,8 +134,8 @@ impl Triangle {
     /// ln of the restricted likelihood with all columns.
     fn log_likelihood(&self, freedom: f64) -> f64 {
         let columns = self.triangle.ncols() - 1;
-        let pivots = self.triangle.diagonal();
-        let pivots = pivots.rows(0, columns);
+        let diagonal = self.triangle.diagonal();
+        let pivots = diagonal.rows(0, columns);
         let design: f64 = pivots.iter().map(|pivot| pivot.abs().ln()).sum();
         -0.5 * self.log_determinant - design - 0.5 * freedom * self.residual_square(columns).ln()
     }
@@ -181,8 +181,8 @@ impl CurveResiduals<'_> {
         let unrestricted = parts.iter().map(|(part, [_, log])| part.weight.ln() + log);
         let deviance = -2.0 * log_of_sum(unrestricted.collect());
         let weighed = parts.into_iter().zip(weights);
-        let parts = weighed.filter(|(_, weight)| *weight > LEAST);
-        let parts = parts.map(|((part, _), weight)| Part { weight, ..part });
+        let significant = weighed.filter(|(_, weight)| *weight > LEAST);
+        let parts = significant.map(|((part, _), weight)| Part { weight, ..part });
         Some(CurveNoise {
             parts: parts.collect(),
             freedom,
@@ -237,8 +237,8 @@ impl CurveResiduals<'_> {
     fn candidates(&self) -> Vec<Candidate> {
         let curves = self.orders.iter().flatten();
         let longest = curves.map(|curve| curve.rows.len()).max().unwrap_or(0) as f64;
-        let lengths = std::iter::successors(Some(SHORTEST), |length| Some(STEP * length));
-        let lengths: Vec<f64> = lengths.take_while(|l| *l <= LONGEST * longest).collect();
+        let geometric = std::iter::successors(Some(SHORTEST), |length| Some(STEP * length));
+        let lengths: Vec<f64> = geometric.take_while(|l| *l <= LONGEST * longest).collect();
         let each = (lengths.len() * self.orders.len()) as f64;
         let correlation = |share: f64, length: f64| Correlation {
             decay: Decay::Exponential,

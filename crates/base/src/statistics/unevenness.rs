@@ -108,9 +108,9 @@ impl Unevenness {
             .unzip();
         let [x, y] = [x, y].map(bounded);
         let middle = 0.5 * (mean(&x) + mean(&y));
-        let factors = x.iter().zip(&y);
+        let components = x.iter().zip(&y);
         let factors =
-            factors.map(|(x, y)| [x, y].map(|logarithm| (0.5 * (logarithm - middle)).exp()));
+            components.map(|(x, y)| [x, y].map(|logarithm| (0.5 * (logarithm - middle)).exp()));
         Some(Self {
             factors: factors.collect(),
         })
@@ -151,8 +151,8 @@ impl Information {
         let all = sites(positions, &around, positions, true)?;
         let is_inside =
             |index: &usize| all[*index][MARGIN_TERMS[0]].max(all[*index][MARGIN_TERMS[1]]) < MARGIN;
-        let chosen = (0..positions.len()).filter(|index| margin || is_inside(index));
-        let chosen: Vec<usize> = chosen.collect();
+        let candidates = (0..positions.len()).filter(|index| margin || is_inside(index));
+        let chosen: Vec<usize> = candidates.collect();
         if chosen.len() < FEWEST[0] {
             return None;
         }

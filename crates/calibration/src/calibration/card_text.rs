@@ -33,8 +33,8 @@ pub fn card_text(fit: &Fit, tests: &[TestData], provenance: &Provenance) -> Stri
     {
         return softened_card(base, fit, provenance);
     }
-    let files = provenance.files.iter().map(|file| file_name(file));
-    let files = files.collect::<Vec<_>>().join(", ");
+    let names = provenance.files.iter().map(|file| file_name(file));
+    let files = names.collect::<Vec<_>>().join(", ");
     let [specimen, source, doi] = ["specimen", "source", "doi"].map(|key| stated(tests, key));
     let title = match &specimen {
         Some(specimen) => format!("{specimen}, {}", fit.law.name),
@@ -54,7 +54,7 @@ pub fn card_text(fit: &Fit, tests: &[TestData], provenance: &Provenance) -> Stri
     let [low, high] = fit.quality.stretch_range;
     let data = [
         ("test", quoted(&kinds.join(", "))),
-        ("stress_measure", quoted(fit.stress_measure().name())),
+        ("stress_measure", quoted(fit.stress_measure.name())),
         ("strain_measure", quoted("nominal")),
         ("offset", quoted("subtract")),
         ("stretch_range", format!("[{low}, {high}]")),
@@ -114,20 +114,20 @@ fn recipe(fit: &Fit, provenance: &Provenance) -> String {
     }
     let base = provenance.base_card.as_deref();
     entries.extend(base.map(|card| ("base_card", quoted(card))));
-    let bounds = fit.settings.bounds.iter();
-    let bounds = bounds.map(|(key, [low, high])| format!("{key}={low}..{high}"));
+    let limits = fit.settings.bounds.iter();
+    let bounds = limits.map(|(key, [low, high])| format!("{key}={low}..{high}"));
     if bounds.len() > 0 {
         entries.push(("bounds", list(bounds)));
     }
     let uncertainty = uncertainty(fit);
     entries.extend(uncertainty.iter().flat_map(ParameterUncertainty::lines));
-    let reading = provenance.reading.iter();
-    let reading = reading.map(|(key, value)| format!("{key}: {value}"));
+    let statements = provenance.reading.iter();
+    let reading = statements.map(|(key, value)| format!("{key}: {value}"));
     if reading.len() > 0 {
         entries.push(("reading", list(reading)));
     }
-    let values = fit.parameters.iter();
-    let values = values.map(|one| format!("{} = {}", one.key, one.value));
+    let fitted = fit.parameters.iter();
+    let values = fitted.map(|one| format!("{} = {}", one.key, one.value));
     if values.len() > 0 {
         entries.push(("values", list(values)));
     }

@@ -28,7 +28,8 @@ pub struct Fit {
     pub choices: Vec<(&'static str, String)>,
     /// The points (λ − 1, nominal stress in MPa) of a law that takes the curve as it is.
     pub curve: Vec<[f64; 2]>,
-    pub(in crate::calibration) stress_measure: StressMeasure,
+    /// The stress measure of the data.
+    pub stress_measure: StressMeasure,
     /// The fitted stresses at all observations of each test, in the measure of the data, in MPa.
     pub predicted: Vec<Vec<f64>>,
     /// The settings.
@@ -120,11 +121,6 @@ impl Fit {
         of_law.chain(of_zeros).collect()
     }
 
-    /// The stress measure of the data.
-    pub fn stress_measure(&self) -> StressMeasure {
-        self.stress_measure
-    }
-
     /// The fit; refused where it does not follow the data at all although no bound was stated, which could be the reason.
     ///
     /// # Errors
@@ -178,8 +174,8 @@ impl Fit {
     }
 
     fn known_half_widths(&self, data: &TestData, at: &[Observation]) -> Option<Vec<f64>> {
-        let noise = self.quality.noise.as_ref();
-        let noise = noise.filter(|_| self.quality.has_intervals())?;
+        let known = self.quality.noise.as_ref();
+        let noise = known.filter(|_| self.quality.has_intervals())?;
         // Zeros do not enter the law's curve.
         let fixed = &self.quality.fixed;
         let mut values: Vec<f64> = self.parameters.iter().map(|one| one.value).collect();

@@ -139,10 +139,10 @@ pub fn lower(model: &dyn Residuals, values: &[f64], bounds: &[[f64; 2]]) -> Opti
     let limit = at.significantly_smaller()?;
     let is_lower = |tried: &Vec<f64>| sum_of_squares(model, tried) < limit;
     let along = |halvings: i32| at.moved(0.5_f64.powi(halvings));
-    let inside = (0..values.len()).filter(|index| !at.free.contains(index));
-    let inside = inside.filter(|index| (bounds[*index][1] - bounds[*index][0]).is_finite());
-    let inside = inside.flat_map(|index| INSIDE.map(|share| (index, share)));
-    let inside = inside.map(|(index, share)| {
+    let at_bound = (0..values.len()).filter(|index| !at.free.contains(index));
+    let bounded = at_bound.filter(|index| (bounds[*index][1] - bounds[*index][0]).is_finite());
+    let trials = bounded.flat_map(|index| INSIDE.map(|share| (index, share)));
+    let inside = trials.map(|(index, share)| {
         let mut moved = values.to_vec();
         let middle = 0.5 * (bounds[index][0] + bounds[index][1]);
         moved[index] += share * (middle - values[index]);
@@ -168,8 +168,8 @@ impl<'a> Tangent<'a> {
             return None;
         }
         let pairs = values.iter().zip(bounds);
-        let held = pairs.map(|(value, [low, high])| value <= low || value >= high);
-        let held: Vec<bool> = held.collect();
+        let is_held = pairs.map(|(value, [low, high])| value <= low || value >= high);
+        let held: Vec<bool> = is_held.collect();
         let jacobian = jacobian(model, values, &held, &vec![LEAST_SIZE; values.len()])?;
         let has_effect = |index: &usize| jacobian.column(*index).iter().any(|entry| *entry != 0.0);
         let free: Vec<usize> = (0..values.len()).filter(has_effect).collect();

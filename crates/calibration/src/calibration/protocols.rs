@@ -92,8 +92,8 @@ fn further(fit: &Fit, protocols: &[TestData]) -> Option<FurtherProtocol> {
         let response = Elastic::new(fit.law, &protocol).with_zeros();
         let misfit = Misfit::new(response, fit.settings.weighting);
         let least = vec![LEAST_SIZE; quality.fixed.len()];
-        let slopes = jacobian(&misfit, &fit.values(), &quality.fixed, &least)?;
-        let slopes = slopes.select_columns(&free.clone().collect::<Vec<_>>());
+        let derivatives = jacobian(&misfit, &fit.values(), &quality.fixed, &least)?;
+        let slopes = derivatives.select_columns(&free.clone().collect::<Vec<_>>());
         let across = &covariance * slopes.transpose();
         let size = slopes.nrows();
         let inverse = (&slopes * &across + variance * DMatrix::identity(size, size)).cholesky()?;
@@ -128,9 +128,9 @@ fn variance(fit: &Fit, protocols: &[TestData], values: usize) -> f64 {
 
 /// A protocol up to shares of the largest strains, or to the largest stress, whose stresses are those of the law.
 fn protocol(fit: &Fit, protocols: &[TestData], ratio: [f64; 2]) -> Option<TestData> {
-    let rows = protocols.iter().map(|one| one.observations.len());
-    let rows = rows.sum::<usize>();
-    let rows = (rows / protocols.len() / 2).max(2);
+    let counts = protocols.iter().map(|one| one.observations.len());
+    let total: usize = counts.sum();
+    let rows = (total / protocols.len() / 2).max(2);
     let largest = [0, 1].map(|axis| {
         let strains = protocols.iter().map(|protocol| protocol.reached(axis));
         ratio[axis] * strains.fold(0.0, f64::max)

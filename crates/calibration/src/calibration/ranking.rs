@@ -76,7 +76,7 @@ pub fn rank(tests: &[TestData], settings: &FitSettings) -> (Vec<Fit>, Vec<String
 pub fn best(fits: Vec<Fit>) -> Option<Fit> {
     let is_stable = |fit: &Fit| fit.quality.is_stable();
     let is_determined = |fit: &Fit| is_stable(fit) && fit.quality.is_identifiable();
-    let chosen = fits.iter().position(is_determined);
-    let chosen = chosen.or_else(|| fits.iter().position(is_stable));
+    let determined = fits.iter().position(is_determined);
+    let chosen = determined.or_else(|| fits.iter().position(is_stable));
     fits.into_iter().nth(chosen.unwrap_or(0))
 }

@@ -215,8 +215,8 @@ fn rates(tests: &[TestData]) -> Option<[f64; 2]> {
             continue;
         };
         let axis = data.axes[0];
-        let rows = data.observations.iter().zip(times);
-        let rows: Vec<(f64, f64)> = rows
+        let timed = data.observations.iter().zip(times);
+        let rows: Vec<(f64, f64)> = timed
             .filter(|(one, _)| one.axis == axis)
             .map(|(one, time)| (*time, data.drawn_strain(one)))
             .collect();

@@ -79,8 +79,8 @@ impl Default for FitSettings {
 impl FitSettings {
     /// The same without the bounds of some parameters.
     pub(in crate::calibration) fn without(&self, keys: &[&str]) -> Self {
-        let bounds = self.bounds.iter();
-        let bounds = bounds.filter(|(key, _)| !keys.contains(&&**key));
+        let all = self.bounds.iter();
+        let bounds = all.filter(|(key, _)| !keys.contains(&&**key));
         Self {
             bounds: bounds.cloned().collect(),
             ..self.clone()

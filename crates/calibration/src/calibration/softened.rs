@@ -71,8 +71,8 @@ impl Softened {
         axis: usize,
         steps: u32,
     ) -> Vec<[f64; 2]> {
-        let rows = data.observations.iter().filter(|one| one.axis == axis);
-        let rows: Vec<&Observation> = rows.collect();
+        let along = data.observations.iter().filter(|one| one.axis == axis);
+        let rows: Vec<&Observation> = along.collect();
         let mut most = data.energy_before(law);
         let mut point = |one: &Observation| {
             let [energy, stress] = data.state_of(law, one);
@@ -120,8 +120,8 @@ struct Record {
 impl Record {
     fn of(data: &TestData, law: &dyn HyperelasticLaw, predicted: &[f64]) -> Self {
         let axis = data.drawn_axis_of(data.axes[0]);
-        let rows = data.observations.iter().zip(predicted);
-        let rows = rows.filter(|(one, _)| one.axis == axis);
+        let pairs = data.observations.iter().zip(predicted);
+        let rows = pairs.filter(|(one, _)| one.axis == axis);
         let row = |(one, fitted): (&Observation, &f64)| {
             let x = one.strains[axis];
             let nominal = |stress| data.stress_measure.to_nominal(stress, x);

@@ -86,8 +86,8 @@ fn starts(of_law: &[f64], bounds: &[[f64; 2]], largest: f64) -> Vec<Vec<f64>> {
         for width in [0.05, 0.3] {
             for beta in [0.01, 0.3] {
                 let values = [of_law, &[r, width * largest, beta]].concat();
-                let within = values.iter().zip(bounds);
-                let within = within.map(|(value, [low, high])| value.clamp(*low, *high));
+                let pairs = values.iter().zip(bounds);
+                let within = pairs.map(|(value, [low, high])| value.clamp(*low, *high));
                 starts.push(within.collect());
             }
         }

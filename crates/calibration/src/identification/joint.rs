@@ -171,7 +171,7 @@ impl Joint<'_> {
         reduced
     }
 
-    /// The normal equations of motion and functions,
+    /// The normal equations of motion and functions, with `more` parameters after those of the functions,
     ///
     /// ```text
     /// [H G; Gᵀ F] [δc; δθ] = [g; h]      reduced to      (F − Gᵀ H⁻¹ G) δθ = h − Gᵀ H⁻¹ g
@@ -179,19 +179,7 @@ impl Joint<'_> {
     ///
     /// # Errors
     /// [`FactorFault`] when the instants do not determine the motion.
-    pub fn linearise(&self, state: &State) -> Result<JointEquations, FactorFault> {
-        self.linearise_with(state, &[])
-    }
-
-    /// The same with further parameters after those of the functions.
-    ///
-    /// # Errors
-    /// As [`Self::linearise`].
-    pub fn linearise_with(
-        &self,
-        state: &State,
-        more: &[Column],
-    ) -> Result<JointEquations, FactorFault> {
+    pub fn linearise(&self, state: &State, more: &[Column]) -> Result<JointEquations, FactorFault> {
         let motions = state.motion.len();
         let count = state.functions.len() + more.len();
         let mut reduced = NormalEquations::new(count);

@@ -129,8 +129,8 @@ pub fn smooth(times: &[f64], signal: &[f64], degree: usize) -> Option<SignalSpli
         let spline = BSpline::new(range, intervals, degree, Ends::Uniform);
         if let Ok(coefficients) = nearest(&spline, times, signal) {
             let sampled = SplineValues::new(&spline, times, 0);
-            let squares = signal.iter().enumerate();
-            let squares = squares.map(|(i, y)| (y - sampled.value(i, &coefficients)).powi(2));
+            let rows = signal.iter().enumerate();
+            let squares = rows.map(|(i, y)| (y - sampled.value(i, &coefficients)).powi(2));
             let free = n - spline.count() as f64;
             let variance = squares.sum::<f64>() / free;
             let score = variance * n / free;
@@ -162,8 +162,8 @@ pub fn wanted_parts(extension: &SignalSpline, force: &SignalSpline) -> usize {
 
 /// The parts of the motion that the longest interval between two instants allows.
 pub fn bridged_parts(times: &[f64]) -> usize {
-    let longest = times.windows(2).map(|pair| pair[1] - pair[0]);
-    let longest = longest.fold(f64::MIN_POSITIVE, f64::max);
+    let intervals = times.windows(2).map(|pair| pair[1] - pair[0]);
+    let longest = intervals.fold(f64::MIN_POSITIVE, f64::max);
     ((BRIDGED * (times[times.len() - 1] - times[0]) / longest) as usize).max(1)
 }
 

@@ -140,16 +140,16 @@ fn trials(
     // A form that is wrong looks like a body of another kind.
     let is_free = |function: &Basis| matches!(function.form, Form::Spline(_));
     let are_free = joint.functions.iter().all(is_free);
-    let tried = Suspect::ALL.into_iter().filter(|suspect| match suspect {
+    let possible = Suspect::ALL.into_iter().filter(|suspect| match suspect {
         Suspect::Mass => joint.recording.mass > 0.0,
         other => are_free || !other.is_of_body(),
     });
-    let tried: Vec<Suspect> = tried.collect();
+    let tried: Vec<Suspect> = possible.collect();
     let columns: Vec<Column> = tried
         .iter()
         .map(|suspect| column(joint, &fit.motion, *suspect))
         .collect();
-    let Ok(equations) = joint.linearise_with(state, &columns) else {
+    let Ok(equations) = joint.linearise(state, &columns) else {
         return Vec::new();
     };
     let (reduced, count) = (&equations.reduced, state.functions.len());
@@ -218,10 +218,10 @@ pub fn examine(
 
 /// The reason why suspects make a recording doubtful, with a remedy.
 pub fn description(suspects: &[Suspected]) -> Option<String> {
-    let words = suspects
+    let descriptions = suspects
         .iter()
         .map(|suspected| suspected.suspect.words(suspected.amount, suspected.error));
-    let words: Vec<String> = words.collect();
+    let words: Vec<String> = descriptions.collect();
     let remedy = if suspects.first()?.suspect.is_of_body() {
         "smooth functions cannot follow it, and no interval or band includes it"
     } else {

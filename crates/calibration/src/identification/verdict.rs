@@ -74,9 +74,9 @@ pub fn notes(result: &Identification, recording: &Recording) -> Vec<String> {
             .all(|x| function.at(x).holds(0.0))
     };
     let functions = result.functions().into_iter();
-    let undetermined = functions.filter(|(_, _, function)| is_undetermined(function));
-    let undetermined = undetermined
-        .map(|(name, ..)| format!("the recording does not distinguish {name}(·) from zero"));
+    let unknown = functions.filter(|(_, _, function)| is_undetermined(function));
+    let undetermined =
+        unknown.map(|(name, ..)| format!("the recording does not distinguish {name}(·) from zero"));
     let mass = (recording.mass == 0.0).then(|| "no mass is stated: inertia is left out".to_owned());
     undetermined.chain(mass).collect()
 }

@@ -172,7 +172,7 @@ pub fn fit_picture(fit: &Fit, tests: &[TestData]) -> Drawing {
     let courses = Course::all(&drawn);
     let largest = tests.iter().map(|test| test.largest_stress);
     let largest = largest.fold(0.0, f64::max);
-    let stress = format!("{} stress", fit.stress_measure().title());
+    let stress = format!("{} stress", fit.stress_measure.title());
     let over = |title: String, x, lines| stress_chart(title, x, &stress, largest, lines);
     let softening = fit.softened.as_ref().map_or("", |_| " with softening");
     let law = title_case(fit.law.name);

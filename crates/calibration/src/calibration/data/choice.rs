@@ -231,8 +231,8 @@ impl<'a> Choice<'a> {
             }
         };
         let stresses = free(Kind::Stress, self);
-        let strains = free(Kind::Strain, self).into_iter();
-        let strains = strains.filter(|column| self.may_be_strain(*column));
+        let columns = free(Kind::Strain, self).into_iter();
+        let strains = columns.filter(|column| self.may_be_strain(*column));
         let pairs: Vec<[usize; 2]> = strains
             .flat_map(|strain| stresses.iter().map(move |stress| [strain, *stress]))
             .filter(|[strain, stress]| strain != stress)
@@ -246,8 +246,8 @@ impl<'a> Choice<'a> {
             }
         }
         if pairs.len() > 1 {
-            let options = pairs.iter();
-            let options = options
+            let each = pairs.iter();
+            let options = each
                 .map(|[strain, stress]| self.option(&[("strain", *strain), ("stress", *stress)]));
             let message = format!(
                 "{}: the columns have no names, and more than one reading is possible",

@@ -91,8 +91,8 @@ pub fn strains(
         Ok((column.0, strain_factor(head, roles, column, measure)?))
     };
     let along = scaled(first)?;
-    let across = of_kind(roles, Kind::Strain).find(|(_, role)| role.axis() == 1);
-    let across = across.map(scaled).transpose()?;
+    let second = of_kind(roles, Kind::Strain).find(|(_, role)| role.axis() == 1);
+    let across = second.map(scaled).transpose()?;
     Ok((measure, [Some(along), across]))
 }
 
@@ -294,8 +294,8 @@ impl ColumnReading {
     fn of(head: &Head, roles: &[Role], (column, name): (&Column, String), role: &Role) -> Self {
         let key = format!("{} measure", role.kind.name());
         let stated = || head.setting(&key, None).ok().flatten();
-        let measure = role.measure.map(str::to_owned).or_else(stated);
-        let measure = measure.unwrap_or_default();
+        let named = role.measure.map(str::to_owned).or_else(stated);
+        let measure = named.unwrap_or_default();
         let divided_by = match &*measure {
             DISPLACEMENT => length(head, roles, role.axis())
                 .ok()

@@ -36,8 +36,8 @@ impl Conversion {
     /// # Errors
     /// [`Error::Input`] when the unit is not a unit of stress, or when the file has times that cannot be read.
     pub fn table(&self, data: &TestData) -> Result<String, Error> {
-        let factor = units::factor(&self.unit, Dimension::Stress);
-        let factor = factor.map_err(|fault| {
+        let read = units::factor(&self.unit, Dimension::Stress);
+        let factor = read.map_err(|fault| {
             let known: Vec<_> = Dimension::Stress.units().collect();
             let hint = format!("known units: {}", known.join(", "));
             Error::input(format!("the unit to write {fault}"), hint)

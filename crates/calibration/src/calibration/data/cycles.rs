@@ -246,14 +246,14 @@ pub fn reversals(head: &Head, test: Test, rows: &[(usize, f64)]) -> Option<Diagn
     // The next protocol of a biaxial test begins at rest: no specimen was unloaded within one row.
     let begins =
         |pair: &[(usize, f64)]| pair[1].1.abs() <= BEGINS * far && pair[0].1.abs() > 0.5 * far;
-    let changes = rows
+    let moving = rows
         .windows(2)
         .filter(|pair| pair[0].1 != pair[1].1 && !(test == Test::Biaxial && begins(pair)));
-    let changes: Vec<(usize, bool)> = changes
+    let changes: Vec<(usize, bool)> = moving
         .map(|pair| (pair[1].0, pair[1].1 > pair[0].1))
         .collect();
-    let turns = changes.windows(2).filter(|pair| pair[0].1 != pair[1].1);
-    let turns: Vec<usize> = turns.map(|pair| pair[1].0).collect();
+    let reversed = changes.windows(2).filter(|pair| pair[0].1 != pair[1].1);
+    let turns: Vec<usize> = reversed.map(|pair| pair[1].0).collect();
     let first = *turns.first()?;
     if !matches!(Cycle::stated(head), Ok(None)) {
         return None;

@@ -128,8 +128,8 @@ impl Layout {
         let row = |row: &usize| &table.rows[*row].0;
         // Without any zero found in the record.
         let plain = Part::all_rows(0);
-        let strains = rows.iter().map(|at| self.strains_of(row(at), &plain)[0]);
-        let strains: Vec<f64> = strains.collect();
+        let of_rows = rows.iter().map(|at| self.strains_of(row(at), &plain)[0]);
+        let strains: Vec<f64> = of_rows.collect();
         let of_axis = |stress: &StressColumn| {
             let stresses: Vec<f64> = rows.iter().map(|at| row(at)[stress.column]).collect();
             chosen(&strains, &stresses)
@@ -273,9 +273,9 @@ impl Layout {
                 strains.rounding(&read)
             }
         };
-        let stresses = self.stresses.iter();
+        let columns = self.stresses.iter();
         let stresses =
-            stresses.map(|stress| written(stress.column).rounding(&|y| y * stress.factor));
+            columns.map(|stress| written(stress.column).rounding(&|y| y * stress.factor));
         let strains = self.strains.iter().flatten().map(of_strain);
         [strains.fold(0.0, f64::max), stresses.fold(0.0, f64::max)]
     }

@@ -184,8 +184,8 @@ fn axes_of(name: &str) -> impl Iterator<Item = (&str, usize)> {
         let stems = ends.into_iter().filter_map(|end| name.strip_suffix(end));
         stems.map(move |stem| (stem.trim_end_matches('_'), axis))
     });
-    let beginnings = BEGINNINGS.into_iter().enumerate();
-    let beginnings = beginnings.filter_map(move |(axis, letter)| {
+    let letters = BEGINNINGS.into_iter().enumerate();
+    let beginnings = letters.filter_map(move |(axis, letter)| {
         let stem = name.strip_prefix(letter)?;
         Some((stem.trim_start_matches('_'), axis))
     });

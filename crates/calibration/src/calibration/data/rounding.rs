@@ -41,8 +41,8 @@ impl WrittenColumn {
     pub fn is_commanded(&self, measured: &Self) -> bool {
         /// Numbers of more digits count as exact.
         const MOST: f64 = 1e15;
-        let finest = self.steps.iter().copied().filter(|step| *step > 0.0);
-        let finest = finest.fold(f64::INFINITY, f64::min);
+        let positive = self.steps.iter().copied().filter(|step| *step > 0.0);
+        let finest = positive.fold(f64::INFINITY, f64::min);
         let position = |value: &f64| (value / finest).round();
         let positions: Vec<f64> = self.values.iter().map(position).collect();
         if positions.iter().any(|position| position.abs() > MOST) {

@@ -203,8 +203,8 @@ pub struct TestData {
 impl TestData {
     /// The warnings about the data, and what was taken of a record as warnings.
     pub fn all_warnings(&self) -> Vec<Diagnostic> {
-        let remarks = self.remarks.iter();
-        let remarks = remarks.map(|remark| Diagnostic::warning("", remark));
+        let taken = self.remarks.iter();
+        let remarks = taken.map(|remark| Diagnostic::warning("", remark));
         self.warnings.iter().cloned().chain(remarks).collect()
     }
 

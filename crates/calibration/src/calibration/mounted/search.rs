@@ -58,14 +58,14 @@ impl MountedSheet {
                 };
                 let known = solved.iter().map(|(_, states)| &states[0]);
                 let nearest = known.min_by(|a, b| far(a).total_cmp(&far(b)));
-                let states = search.first(target, [starts.get(*number), nearest, None]);
-                let states = states.map_err(|fault| fault_at(target, fault))?;
+                let result = search.first(target, [starts.get(*number), nearest, None]);
+                let states = result.map_err(|fault| fault_at(target, fault))?;
                 solved.push((*number, states));
             }
             Ok(solved)
         });
-        let all: Vec<Vec<(usize, Vec<SheetState>)>> = chunks.collect::<Result<_, Error>>()?;
-        let mut all: Vec<(usize, Vec<SheetState>)> = all.into_iter().flatten().collect();
+        let of_chunks: Vec<Vec<(usize, Vec<SheetState>)>> = chunks.collect::<Result<_, Error>>()?;
+        let mut all: Vec<(usize, Vec<SheetState>)> = of_chunks.into_iter().flatten().collect();
         all.sort_by_key(|(number, _)| *number);
         Ok(all.into_iter().map(|(_, states)| states).collect())
     }
@@ -105,8 +105,8 @@ impl<'a> Search<'a> {
     fn new(sheet: &'a MountedSheet, bodies: &'a [Body]) -> Result<Self, Error> {
         let first = &bodies[0];
         let problem = sheet.problem(&first.law, [0.0; 2]);
-        let model = problem.on(&sheet.mesh, &first.energy);
-        let model = model.map_err(|fault| Error::Input(vec![fault]))?;
+        let built = problem.on(&sheet.mesh, &first.energy);
+        let model = built.map_err(|fault| Error::Input(vec![fault]))?;
         let newton = Newton::new(&*model.potential(1.0, &[]), &model.held());
         Ok(Self {
             sheet,
@@ -158,8 +158,8 @@ impl<'a> Search<'a> {
     ) -> Result<Vec<SheetState>, SolveFault> {
         let mesh = &self.sheet.mesh;
         let problem = |body: &Body| self.sheet.problem(&body.law, state.bars);
-        let model = problem(first);
-        let model = model
+        let first_problem = problem(first);
+        let model = first_problem
             .on(mesh, &first.energy)
             .expect("the groups of the shape");
         let describe = |element| model.describe(element);
@@ -274,8 +274,8 @@ impl<'a> Search<'a> {
     ) -> Result<SheetState, SolveFault> {
         let mesh = &self.sheet.mesh;
         let problem = self.sheet.problem(&body.law, bars);
-        let model = problem.on(mesh, &body.energy);
-        let model = model.expect("the groups of the shape");
+        let built = problem.on(mesh, &body.energy);
+        let model = built.expect("the groups of the shape");
         let potential = model.potential(1.0, &[]);
         let describe = |element| model.describe(element);
         let mut reached = field.to_vec();

@@ -178,8 +178,8 @@ impl Solved {
         for rounds in 1..=MOST_ROUNDS {
             let result = self.middle(law, &values);
             let before = best.as_ref().map_or(f64::INFINITY, |best| best.square);
-            let square = result.as_ref();
-            let square = square.map_or(f64::INFINITY, |middle| middle.square(&self.tests));
+            let outcome = result.as_ref();
+            let square = outcome.map_or(f64::INFINITY, |middle| middle.square(&self.tests));
             if square <= AS_GOOD * before || best.is_none() {
                 let middle = result?;
                 share = (2.0 * share).min(SHARES[1]);
@@ -292,8 +292,8 @@ impl Solved {
             let size = if *value == 0.0 { LEAST } else { value.abs() };
             Some(SHARE * size)
         });
-        let of_zeros = self.zeros.iter();
-        let of_zeros = of_zeros.map(|zero| match zero {
+        let zeros = self.zeros.iter();
+        let of_zeros = zeros.map(|zero| match zero {
             Zero::Force { .. } => None,
             Zero::Stretch { .. } | Zero::Record { .. } => Some(SHARE),
         });
@@ -352,8 +352,8 @@ impl Solved {
         let law = [self.sheet_law(reached.law, &reached.values).0];
         let knots = self.interpolation.knots();
         let coarse = self.sheet.states(&law, knots, &self.states)?.concat();
-        let states = fine.states(&law, knots, &self.sheet.on(&fine, &coarse))?;
-        let mut states = states.concat();
+        let fine_states = fine.states(&law, knots, &self.sheet.on(&fine, &coarse))?;
+        let mut states = fine_states.concat();
         let correction = |fine: f64, coarse: f64| (fine - coarse) * RATIO / (RATIO - 1.0);
         let mut most = 0.0_f64;
         for (fine, coarse) in states.iter_mut().zip(&coarse) {

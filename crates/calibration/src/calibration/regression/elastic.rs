@@ -168,8 +168,8 @@ impl<'a> Elastic<'a> {
     /// Every n-th point, so that about `count` are left.
     pub fn thinned(&self, count: usize) -> Self {
         let stride = self.points.len().div_ceil(count);
-        let points = self.points.iter().copied();
-        let points = points.zip(self.observations.iter().copied());
+        let rows = self.points.iter().copied();
+        let points = rows.zip(self.observations.iter().copied());
         Self::of_points(self.law, self.tests, points.step_by(stride).collect())
     }
 

@@ -79,13 +79,13 @@ impl Search<'_> {
         let least = sum_of_squares(&thinned, &values);
         let of_law = self.of_law(values.clone());
         let elsewhere = |result: &Vec<f64>| self.differs(result, &of_law);
-        let rival = minima
+        let best_other = minima
             .iter()
             .find(|(sum, result)| *sum <= FAR * least && elsewhere(&self.of_law(result.clone())))
             .and_then(|(_, result)| descend(&thinned, result, self.bounds))
             .map(|result| self.of_law(result))
             .filter(elsewhere);
-        let rival = rival.map(|other| Rival {
+        let rival = best_other.map(|other| Rival {
             worse: (sum(&other) / sum(&values) - 1.0).max(0.0),
             values: other,
         });

@@ -150,8 +150,8 @@ impl MovedZero {
         let (by, error) = (self.by.value, self.by.standard_error);
         let moved = match test.found_zero? {
             FoundZero::Strain { length } => {
-                let pulls = test.observations.last();
-                let pulls = pulls.is_some_and(|one| test.drawn_strain(one) > 0.0);
+                let last = test.observations.last();
+                let pulls = last.is_some_and(|one| test.drawn_strain(one) > 0.0);
                 let side = if (by > 0.0) == pulls {
                     "before"
                 } else {

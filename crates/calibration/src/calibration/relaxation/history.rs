@@ -64,8 +64,8 @@ impl History {
         for (test, data) in tests.iter().enumerate() {
             let times = times(data)?;
             for axis in [0, 1] {
-                let rows = data.observations.iter().zip(times);
-                let rows = rows.filter(|(one, _)| one.axis == axis);
+                let timed = data.observations.iter().zip(times);
+                let rows = timed.filter(|(one, _)| one.axis == axis);
                 let states: Vec<State> = rows
                     .map(|(one, time)| State {
                         time: *time,

@@ -122,8 +122,8 @@ impl Response for Viscous<'_> {
         let stresses = self.of_histories(&histories, values);
         for (history, stresses) in histories.iter().zip(stresses) {
             let axis = history.states[0].observation.axis;
-            let rows = self.tests[history.test].observations.iter();
-            let rows = rows.zip(&mut predicted[history.test]);
+            let observations = self.tests[history.test].observations.iter();
+            let rows = observations.zip(&mut predicted[history.test]);
             let along = rows.filter(|(one, _)| one.axis == axis);
             for ((_, predicted), stress) in along.zip(stresses) {
                 *predicted = stress;
@@ -145,8 +145,8 @@ impl Misfit<Viscous<'_>> {
         parameters: &[Parameter],
         bounds: &[[f64; 2]],
     ) -> Option<Vec<f64>> {
-        let starts = laws.iter();
-        let starts = starts.flat_map(|law| self.starts(law, parameters, bounds));
+        let each = laws.iter();
+        let starts = each.flat_map(|law| self.starts(law, parameters, bounds));
         let (_, best) = improved(self, starts.collect(), bounds)
             .into_iter()
             .next()?;

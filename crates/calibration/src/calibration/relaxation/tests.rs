@@ -139,13 +139,8 @@ fn steady_cycles_have_the_storage_and_the_loss_modulus() {
 /// The material of the round trips: C₁₀ in MPa and two terms.
 const TRUTH: [f64; 5] = [0.05, 0.2, 0.4, 0.25, 6.0];
 
-/// Ramp in 1 s to 20 %, and hold.
-fn ramp_and_hold(noise: f64, seed: u64) -> TestData {
-    ramp_and_hold_with(noise, 0.0, seed)
-}
-
-/// The same with noise whose neighbours correlate by so much.
-fn ramp_and_hold_with(noise: f64, correlation: f64, seed: u64) -> TestData {
+/// Ramp in 1 s to 20 %, and hold, with noise whose neighbours have a correlation.
+fn ramp_and_hold(noise: f64, correlation: f64, seed: u64) -> TestData {
     let mut random = ChaCha8Rng::seed_from_u64(seed);
     let mut white = || {
         let (a, b): (f64, f64) = (random.random(), random.random());
@@ -183,7 +178,7 @@ fn fitted(tests: &[TestData], terms: Terms) -> Fit {
 
 #[test]
 fn the_series_of_a_ramp_and_hold_is_found_again_and_its_card_runs() {
-    let tests = [ramp_and_hold(0.0, 0)];
+    let tests = [ramp_and_hold(0.0, 0.0, 0)];
     let fit = fitted(&tests, Terms::Exactly(2));
     assert_parameters(&fit, &TRUTH, 1e-5);
     let text = card_text(&fit, &tests, &Provenance::default());
@@ -197,7 +192,7 @@ fn the_series_of_a_ramp_and_hold_is_found_again_and_its_card_runs() {
 
 #[test]
 fn terms_are_as_many_as_there_are() {
-    let fit = fitted(&[ramp_and_hold(2e-5, 3)], Terms::Automatic);
+    let fit = fitted(&[ramp_and_hold(2e-5, 0.0, 3)], Terms::Automatic);
     let relaxed = fit.relaxed.as_ref().unwrap();
     assert_eq!(relaxed.material.relaxation.len(), 2, "{:?}", relaxed.tried);
     // A law that does not relax needs none.
@@ -229,10 +224,7 @@ fn terms_are_as_many_as_there_are() {
 fn relaxation_is_seen_however_the_noise_correlates() {
     for correlation in [0.9, 0.95] {
         let denied = (0..12_u64).into_par_iter().filter(|seed| {
-            let fit = fitted(
-                &[ramp_and_hold_with(2e-4, correlation, *seed)],
-                Terms::Automatic,
-            );
+            let fit = fitted(&[ramp_and_hold(2e-4, correlation, *seed)], Terms::Automatic);
             let relaxed = fit.relaxed.unwrap();
             relaxed.material.relaxation.is_empty() || fit.parameters[0].value > 0.06
         });
@@ -244,7 +236,7 @@ fn relaxation_is_seen_however_the_noise_correlates() {
 #[test]
 fn intervals_hold_the_truth() {
     let held = |seed: u64| {
-        let fit = fitted(&[ramp_and_hold(1e-4, seed)], Terms::Exactly(2));
+        let fit = fitted(&[ramp_and_hold(1e-4, 0.0, seed)], Terms::Exactly(2));
         let estimates = fit.quality.estimates.iter().zip(TRUTH);
         let inside = estimates.map(|(estimate, truth)| estimate.holds(truth));
         inside.collect::<Vec<bool>>()
@@ -275,7 +267,7 @@ fn what_cannot_be_fitted_is_told_with_a_remedy() {
         .into_iter(),
         "",
     )];
-    let good = [ramp_and_hold(1e-4, 0)];
+    let good = [ramp_and_hold(1e-4, 0.0, 0)];
     for (law, tests, message) in [
         ("neo-hooke", &without[..], "no column of times"),
         ("neo-hooke", &backwards, "the times decrease"),

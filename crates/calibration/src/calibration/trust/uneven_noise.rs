@@ -54,8 +54,8 @@ fn pairs(test: &TestData, law: &dyn HyperelasticLaw, weighting: Weighting) -> Ve
         let weight = weighting.weight_of(test, fitted);
         [weight * fitted, weight * (one.stress - fitted)]
     };
-    let protocols = test.protocols().into_iter();
-    let protocols = protocols.filter(|rows| rows.len() >= FEWEST);
+    let all = test.protocols().into_iter();
+    let protocols = all.filter(|rows| rows.len() >= FEWEST);
     protocols
         .map(|rows| rows.iter().map(pair).collect())
         .collect()
@@ -129,10 +129,10 @@ fn factor(pairs: &Pairs) -> Option<[f64; 2]> {
         .map(|[fitted, residual]| fitted * residual)
         .sum();
     let factor = along / square;
-    let rest = pairs
+    let remainders = pairs
         .iter()
         .map(|[fitted, residual]| residual - factor * fitted);
-    let rest: Vec<f64> = rest.collect();
+    let rest: Vec<f64> = remainders.collect();
     let squares: f64 = rest.iter().map(|residual| residual * residual).sum();
     let products: f64 = rest.windows(2).map(|pair| pair[0] * pair[1]).sum();
     let correlation = (products / squares).clamp(0.0, 0.99);

@@ -19,8 +19,8 @@ pub fn warnings(quality: &Quality, parameters: &[Parameter], rival: Option<&Riva
     let rival = rival.filter(|rival| rival.worse <= NEARLY || is_possible(rival, quality));
     let other = rival.map(|rival| {
         let pairs = parameters.iter().zip(&rival.values);
-        let values = pairs.map(|(parameter, value)| format!("{} = {value:.4}", parameter.key));
-        let values = values.collect::<Vec<_>>().join(", ");
+        let texts = pairs.map(|(parameter, value)| format!("{} = {value:.4}", parameter.key));
+        let values = texts.collect::<Vec<_>>().join(", ");
         if rival.worse <= NEARLY { format!("the fit is not unique: the sum of squares of {values} is at most 5 % larger") } else { format!(
             "the fit is not unique: the sum of squares of {values} is {:.0} % larger, which the noise of so few independent points does not \
              exclude; intervals belong to the fit that was taken",

@@ -71,13 +71,8 @@ fn what_bends_the_functions_and_hides_from_the_misfit_is_named() {
     }
 }
 
-/// A machine that swings about rest at two frequencies, with noise of a fiftieth of both signals.
-fn swinging(stiffness: impl Fn(f64) -> f64, damping: impl Fn(f64) -> f64) -> Recording {
-    swinging_by([6.0, 4.0], stiffness, damping)
-}
-
-/// The same with two amplitudes in mm.
-fn swinging_by(
+/// A machine that swings about rest at two frequencies with these amplitudes in mm, with noise of a fiftieth of both signals.
+fn swinging(
     [first, second]: [f64; 2],
     stiffness: impl Fn(f64) -> f64,
     damping: impl Fn(f64) -> f64,
@@ -114,12 +109,12 @@ fn what_smooth_functions_go_past_is_named() {
         }),
     ];
     for (words, stiffness, damping) in cases {
-        let recording = swinging(stiffness, damping);
+        let recording = swinging([6.0, 4.0], stiffness, damping);
         let actual = identified(&recording);
         let message = asked_for(&actual).unwrap_or_default();
         assert!(message.contains(words), "{words}: {message}");
     }
-    let sound = swinging(constant_k, constant_d);
+    let sound = swinging([6.0, 4.0], constant_k, constant_d);
     let actual = identified(&sound);
     assert_eq!(asked_for(&actual), None);
 }
@@ -207,7 +202,7 @@ fn sound_recordings_are_suspected_of_nothing() {
 #[test]
 fn a_steady_vibration_is_told() {
     let is_steady = |amplitudes: [f64; 2]| {
-        let recording = swinging_by(amplitudes, |x| 0.2 + 0.01 * x, |_| 0.04);
+        let recording = swinging(amplitudes, |x| 0.2 + 0.01 * x, |_| 0.04);
         let actual = identified(&recording);
         let mut doubts = actual.verdict.doubts.iter();
         doubts.any(|doubt| doubt.contains("steady vibration"))
