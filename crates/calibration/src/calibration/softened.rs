@@ -39,15 +39,14 @@ pub fn cycles(
     softening: Softening,
     predicted: &[f64],
 ) -> Vec<SofteningCycle> {
-    let record = Record::of(data, law, predicted);
+    let record = rows(data, law, predicted);
     let mut most = data.energy_before(law);
-    let ends = record.ends();
     let of_cycle = |pair: &[usize]| {
-        let rows = &record.rows[pair[0]..=pair[1]];
+        let rows = &record[pair[0]..=pair[1]];
         let [first, last] = [rows[0].energy, rows[rows.len() - 1].energy];
         let before = most.max(first);
         most = rows.iter().fold(before, |most, row| most.max(row.energy));
-        let [measured, fitted] = record.work(rows);
+        let [measured, fitted] = work(data.test, rows);
         let far = farthest(rows.iter().map(|row| row.strain));
         SofteningCycle {
             test: data.name.clone(),
@@ -58,7 +57,7 @@ pub fn cycles(
             dissipated: softening.dissipated(most) - softening.dissipated(before),
         }
     };
-    ends.windows(2).map(of_cycle).collect()
+    ends(&record).windows(2).map(of_cycle).collect()
 }
 
 impl Softened {
@@ -111,57 +110,46 @@ struct Row {
 }
 
 /// The rows of a test along the axis that does work.
-struct Record {
-    rows: Vec<Row>,
-    /// The number of such axes; NaN where the work is not that of one stress.
-    axes: f64,
+fn rows(data: &TestData, law: &dyn HyperelasticLaw, predicted: &[f64]) -> Vec<Row> {
+    let axis = data.drawn_axis_of(data.axes[0]);
+    let pairs = data.observations.iter().zip(predicted);
+    let along = pairs.filter(|(one, _)| one.axis == axis);
+    let row = |(one, fitted): (&Observation, &f64)| {
+        let nominal = |stress| data.stress_measure.to_nominal(stress, one.strain());
+        Row {
+            strain: data.drawn_strain(one),
+            energy: data.state_of(law, one)[0],
+            stresses: [one.stress, *fitted].map(nominal),
+        }
+    };
+    along.map(row).collect()
 }
 
-impl Record {
-    fn of(data: &TestData, law: &dyn HyperelasticLaw, predicted: &[f64]) -> Self {
-        let axis = data.drawn_axis_of(data.axes[0]);
-        let pairs = data.observations.iter().zip(predicted);
-        let rows = pairs.filter(|(one, _)| one.axis == axis);
-        let row = |(one, fitted): (&Observation, &f64)| {
-            let x = one.strains[axis];
-            let nominal = |stress| data.stress_measure.to_nominal(stress, x);
-            Row {
-                strain: data.drawn_strain(one),
-                energy: data.state_of(law, one)[0],
-                stresses: [one.stress, *fitted].map(nominal),
-            }
-        };
-        Self {
-            rows: rows.map(row).collect(),
-            axes: match data.test {
-                Test::Uniaxial | Test::Planar | Test::SimpleShear => 1.0,
-                Test::Equibiaxial => 2.0,
-                Test::Biaxial => f64::NAN,
-            },
-        }
+/// The rows at which cycles begin, and the last one.
+fn ends(rows: &[Row]) -> Vec<usize> {
+    let strains: Vec<f64> = rows.iter().map(|row| row.strain).collect();
+    let branches = Branches::of(&strains);
+    let mut ends: Vec<usize> = branches.loading.iter().map(|rows| rows.start).collect();
+    if let Some(first) = ends.first_mut() {
+        *first = 0;
     }
+    ends.extend(rows.len().checked_sub(1));
+    ends
+}
 
-    /// The rows at which cycles begin, and the last one.
-    fn ends(&self) -> Vec<usize> {
-        let strains: Vec<f64> = self.rows.iter().map(|row| row.strain).collect();
-        let branches = Branches::of(&strains);
-        let mut ends: Vec<usize> = branches.loading.iter().map(|rows| rows.start).collect();
-        if let Some(first) = ends.first_mut() {
-            *first = 0;
+/// ∫ P dλ of measured and fitted stresses over some rows, by trapezoids, in mJ/mm³; NaN where it is not that of one stress.
+fn work(test: Test, rows: &[Row]) -> [f64; 2] {
+    let axes = match test {
+        Test::Uniaxial | Test::Planar | Test::SimpleShear => 1.0,
+        Test::Equibiaxial => 2.0,
+        Test::Biaxial => f64::NAN,
+    };
+    let mut work = [0.0; 2];
+    for pair in rows.windows(2) {
+        let along = axes * (pair[1].strain - pair[0].strain);
+        for (part, sum) in work.iter_mut().enumerate() {
+            *sum += 0.5 * (pair[0].stresses[part] + pair[1].stresses[part]) * along;
         }
-        ends.extend(self.rows.len().checked_sub(1));
-        ends
     }
-
-    /// ∫ P dλ of measured and fitted stresses over some rows, by trapezoids, in mJ/mm³.
-    fn work(&self, rows: &[Row]) -> [f64; 2] {
-        let mut work = [0.0; 2];
-        for pair in rows.windows(2) {
-            let along = self.axes * (pair[1].strain - pair[0].strain);
-            for (part, sum) in work.iter_mut().enumerate() {
-                *sum += 0.5 * (pair[0].stresses[part] + pair[1].stresses[part]) * along;
-            }
-        }
-        work
-    }
+    work
 }

@@ -137,14 +137,9 @@ pub fn stresses(
 /// in the first row less the displacement there.
 pub fn length(head: &Head, roles: &[Role], axis: usize) -> Faulty<f64> {
     let key = ["length", "width"][axis];
-    match (
-        head.quantity(key, Dimension::Length)?,
-        size_at_rest(head, roles, axis),
-    ) {
-        (Some(stated), _) => Ok(stated),
-        (None, Some(size)) => Ok(size),
-        (None, None) => Err(head.missing(key, "2 mm")),
-    }
+    let stated = head.quantity(key, Dimension::Length)?;
+    let size = stated.or_else(|| size_at_rest(head, roles, axis));
+    size.ok_or_else(|| head.missing(key, "2 mm"))
 }
 
 /// The size of the specimen along an axis before its first displacement in mm, where columns state both.

@@ -139,10 +139,10 @@ impl<'a> Elastic<'a> {
     /// The same with a part that is quadratic in the direction of other values, by which the stresses there are the measured ones of `other`;
     /// `sizes` are those of the values.
     pub fn bent(self, values: &[f64], other: &Elastic, sizes: &[f64]) -> Self {
-        let Some(Linear { at, rows, .. }) = self.linear.as_deref() else {
+        let Some(linear) = self.linear.as_deref() else {
             return self;
         };
-        let direction = values.iter().zip(at).map(|(to, from)| to - from);
+        let direction = values.iter().zip(&linear.at).map(|(to, from)| to - from);
         let shares: Vec<f64> = direction.zip(sizes).map(|(by, size)| by / size).collect();
         let square: f64 = shares.iter().map(|share| share * share).sum();
         let weights = shares.iter().zip(sizes);
@@ -155,9 +155,8 @@ impl<'a> Elastic<'a> {
                 .collect(),
         };
         let linear = Linear {
-            at: at.clone(),
-            rows: rows.clone(),
             bend: (square > 0.0).then_some(bend),
+            ..linear.clone()
         };
         Self {
             linear: Some(Arc::new(linear)),

@@ -1,7 +1,7 @@
 //! Parts of a model of stresses in addition to those of its law: linear in its values, or quadratic along one direction.
 
 /// A part of the stresses that is linear in the values: Σ ∂σᵢ/∂pⱼ (pⱼ − pⱼ₀).
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Linear {
     /// p₀.
     pub at: Vec<f64>,
@@ -12,7 +12,7 @@ pub struct Linear {
 }
 
 /// The weights w of the values, and D of each row in MPa.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Bend {
     pub weights: Vec<f64>,
     pub rows: Vec<f64>,

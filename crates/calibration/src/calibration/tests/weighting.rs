@@ -150,13 +150,18 @@ fn proportional_noise_does_not_make_a_law_softer() {
     assert!(one.interval[0] < 0.05 && 0.05 < one.interval[1], "{one:?}");
 }
 
-/// Rows of neo-Hooke with C₁₀ = 0.05 MPa at some stretches with noise as a share of the largest stress.
-fn neo_hooke(stretches: &[f64], noise: f64, seed: u64) -> Vec<(f64, f64)> {
+/// Lines of stretch and stress of neo-Hooke with C₁₀ = 0.05 MPa, with noise as a share of the largest stress.
+fn neo_hooke(
+    stretches: &[f64],
+    noise: f64,
+    seed: u64,
+    line: impl Fn(f64, f64) -> String,
+) -> String {
     let stress = |stretch: f64| 0.1 * (stretch - stretch.powi(-2));
     let largest = stretches.iter().copied().map(stress).fold(0.0, f64::max);
     let mut normal = normal_numbers(seed);
-    let mut row = |stretch: &f64| (*stretch, stress(*stretch) + noise * largest * normal());
-    stretches.iter().map(&mut row).collect()
+    let row = |l: &f64| line(*l, stress(*l) + noise * largest * normal());
+    stretches.iter().map(row).collect()
 }
 
 fn answer(data: TestData) -> Answer {
@@ -172,18 +177,17 @@ fn commanded_strains_are_no_rounding() {
     let percent: Vec<f64> = (1..=30).map(|row| 1.0 + 0.01 * row as f64).collect();
     for seed in 0..5 {
         for decimals in [1, 6] {
-            let rows = neo_hooke(&replicates, 0.03, seed).into_iter();
-            let rows = rows.map(|(l, s)| format!("{l:.decimals$},{s:.6}\n"));
-            let data = uniaxial(&rows.collect::<String>());
-            assert!(answer(data).has_intervals(), "{seed} {decimals}");
+            let rows = neo_hooke(&replicates, 0.03, seed, |l, s| {
+                format!("{l:.decimals$},{s:.6}\n")
+            });
+            assert!(answer(uniaxial(&rows)).has_intervals(), "{seed} {decimals}");
         }
-        let rows = neo_hooke(&percent, 0.003, seed).into_iter();
-        let rows = rows.map(|(l, s)| format!("{:.0},{:.4}\n", 100.0 * (l - 1.0), 1e3 * s));
-        let text = format!(
-            "# test: uniaxial\nnominal_strain [%],nominal_stress [kPa]\n{}",
-            rows.collect::<String>()
-        );
-        assert!(answer(parsed(&text)).has_intervals(), "{seed}");
+        let rows = neo_hooke(&percent, 0.003, seed, |l, s| {
+            format!("{:.0},{:.4}\n", 100.0 * (l - 1.0), 1e3 * s)
+        });
+        let head = "# test: uniaxial\nnominal_strain [%],nominal_stress [kPa]";
+        let data = parsed(&format!("{head}\n{rows}"));
+        assert!(answer(data).has_intervals(), "{seed}");
     }
 }
 
@@ -192,16 +196,12 @@ fn a_machine_s_unit_of_length_does_not_change_the_verdict() {
     let stretches: Vec<f64> = (0..=80).map(|row| 1.0 + 0.005 * row as f64).collect();
     for (noise, force, noisy) in [(0.01, 6, true), (0.0, 2, false)] {
         for (unit, factor) in [("mm", 1.0), ("in", 25.4), ("m", 1e3)] {
-            let rows = neo_hooke(&stretches, noise, 1).into_iter();
-            let rows = rows
-                .map(|(l, s)| format!("{:.7},{:.force$}\n", 20.0 * (l - 1.0) / factor, 10.0 * s));
+            let rows = neo_hooke(&stretches, noise, 1, |l, s| {
+                format!("{:.7},{:.force$}\n", 20.0 * (l - 1.0) / factor, 10.0 * s)
+            });
             let head = "# test: uniaxial; length: 20 mm; area: 10 mm^2; zero: none";
-            let text = format!(
-                "{head}\nExtension [{unit}],Load [N]\n{}",
-                rows.collect::<String>()
-            );
-            let answer = answer(parsed(&text));
-            assert_eq!(answer.has_intervals(), noisy, "{unit} {noise}");
+            let data = parsed(&format!("{head}\nExtension [{unit}],Load [N]\n{rows}"));
+            assert_eq!(answer(data).has_intervals(), noisy, "{unit} {noise}");
         }
     }
 }
@@ -211,9 +211,10 @@ fn a_machine_s_unit_of_length_does_not_change_the_verdict() {
 fn data_that_were_rounded_are_called_so() {
     let stretches: Vec<f64> = (1..=60).map(|row| 1.0 + f64::from(row) / 60.0).collect();
     for (strain, stress) in [(10, 3), (3, 10), (2, 3)] {
-        let rows = neo_hooke(&stretches, 0.0, 1).into_iter();
-        let rows = rows.map(|(l, s)| format!("{l:.strain$},{s:.stress$}\n"));
-        let data = uniaxial(&rows.collect::<String>());
-        assert_eq!(answer(data), Answer::Rounding, "{strain} {stress}");
+        let rows = neo_hooke(&stretches, 0.0, 1, |l, s| {
+            format!("{l:.strain$},{s:.stress$}\n")
+        });
+        let answer = answer(uniaxial(&rows));
+        assert_eq!(answer, Answer::Rounding, "{strain} {stress}");
     }
 }
