@@ -1,6 +1,8 @@
 //! What tests of fits have in common.
 
-use crate::calibration::{Fit, FitSettings, TestData, Weighting, fit};
+use rayon::prelude::*;
+
+use crate::calibration::{Answer, Fit, FitSettings, Quality, TestData, Weighting, fit};
 use crate::document::Statements;
 use crate::error::Error;
 use crate::material::HyperelasticLaw;
@@ -65,5 +67,65 @@ pub fn assert_parameters(fit: &Fit, expected: &[f64], tolerance: f64) {
         let (key, value) = (parameter.key, parameter.value);
         let deviation = (value / expected - 1.0).abs();
         assert!(deviation < tolerance, "{key} = {value} is not {expected}");
+    }
+}
+
+/// Counts over fits of laws with known values.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Coverage {
+    /// Fits with intervals.
+    pub fits: usize,
+    /// Fits whose residuals are called systematic.
+    pub systematic: usize,
+    /// Fits with intervals whose parameters are not identifiable.
+    pub vague: usize,
+    /// Intervals, and those that hold the true values.
+    pub intervals: usize,
+    pub held: usize,
+}
+
+impl Coverage {
+    /// Over forty seeds.
+    pub fn over_seeds(truth: &[f64], quality: impl Fn(u64) -> Quality + Sync) -> Self {
+        const SEEDS: u64 = 40;
+        let seeds = (0..SEEDS).into_par_iter();
+        let each = seeds.map(|seed| Self::of(&quality(seed), truth));
+        each.reduce(Self::default, Self::plus)
+    }
+
+    fn of(quality: &Quality, truth: &[f64]) -> Self {
+        let answer = quality.verdict.map(|verdict| verdict.answer);
+        let systematic = usize::from(answer == Some(Answer::Systematic));
+        if !quality.has_intervals() {
+            return Self {
+                systematic,
+                ..Self::default()
+            };
+        }
+        let pairs = quality.estimates.iter().zip(truth);
+        let known = pairs.filter(|(one, _)| one.standard_error.is_finite());
+        let held = known.clone().filter(|(one, truth)| one.holds(**truth));
+        Self {
+            fits: 1,
+            systematic,
+            vague: usize::from(!quality.is_identifiable()),
+            held: held.count(),
+            intervals: known.count(),
+        }
+    }
+
+    pub fn plus(self, other: Self) -> Self {
+        Self {
+            fits: self.fits + other.fits,
+            systematic: self.systematic + other.systematic,
+            vague: self.vague + other.vague,
+            intervals: self.intervals + other.intervals,
+            held: self.held + other.held,
+        }
+    }
+
+    /// The share of the intervals that hold the true values.
+    pub fn share(self) -> f64 {
+        self.held as f64 / self.intervals as f64
     }
 }

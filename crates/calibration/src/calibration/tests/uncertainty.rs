@@ -1,13 +1,9 @@
 //! Intervals where more than white noise of one size makes parameters uncertain: zeros that were found in records, parameters at
 //! bounds, tests of unequal noise.
 
-use rayon::prelude::*;
-
-use super::helpers::{fitted, law, parsed};
+use super::helpers::{Coverage, fitted, law, parsed};
 use crate::calibration::*;
-use crate::statistics::{Estimate, normal_numbers};
-
-const SEEDS: u64 = 40;
+use crate::statistics::normal_numbers;
 
 /// A law with its values.
 type Subject = (&'static str, &'static [f64]);
@@ -27,42 +23,9 @@ fn rows(points: usize, noise: f64, seed: u64, row: &dyn Fn(f64) -> [f64; 2]) -> 
     (0..points).map(line).collect()
 }
 
-/// Fits with intervals, intervals that hold the truth, and all intervals.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Held {
-    fits: usize,
-    held: usize,
-    intervals: usize,
-}
-
-impl Held {
-    /// Over all seeds of the tests of one.
-    fn of((name, truth): Subject, tests: &(dyn Fn(u64) -> Vec<TestData> + Sync)) -> Self {
-        let one = |seed: u64| {
-            let quality = fitted(name, &tests(seed)).quality;
-            if !quality.has_intervals() {
-                return Self::default();
-            }
-            let known = quality.estimates.iter().zip(truth);
-            let known = known.filter(|(one, _)| one.standard_error.is_finite());
-            let holds = |(one, truth): &(&Estimate, &f64)| one.holds(**truth);
-            Self {
-                fits: 1,
-                held: known.clone().filter(holds).count(),
-                intervals: known.count(),
-            }
-        };
-        let all = (0..SEEDS).into_par_iter().map(one);
-        all.reduce(Self::default, |a, b| Self {
-            fits: a.fits + b.fits,
-            held: a.held + b.held,
-            intervals: a.intervals + b.intervals,
-        })
-    }
-
-    fn share(self) -> f64 {
-        self.held as f64 / self.intervals as f64
-    }
+/// Over the tests of all seeds.
+fn coverage((name, truth): Subject, tests: &(dyn Fn(u64) -> Vec<TestData> + Sync)) -> Coverage {
+    Coverage::over_seeds(truth, |seed| fitted(name, &tests(seed)).quality)
 }
 
 const PULLED: [Subject; 4] = [
@@ -88,13 +51,9 @@ fn record(subject: Subject, beginning: &str, seed: u64) -> Vec<TestData> {
 #[test]
 fn intervals_hold_the_uncertainty_of_zeros_that_were_found() {
     for beginning in ["preload", "slack", "offset"] {
-        let mut all = Held::default();
-        for subject in PULLED {
-            let actual = Held::of(subject, &|seed| record(subject, beginning, seed));
-            all.fits += actual.fits;
-            all.held += actual.held;
-            all.intervals += actual.intervals;
-        }
+        let each =
+            PULLED.map(|subject| coverage(subject, &|seed| record(subject, beginning, seed)));
+        let all = each.into_iter().fold(Coverage::default(), Coverage::plus);
         assert!(all.fits >= 150, "{beginning}: {all:?}");
         assert!((0.9..=0.99).contains(&all.share()), "{beginning}: {all:?}");
     }
@@ -103,7 +62,7 @@ fn intervals_hold_the_uncertainty_of_zeros_that_were_found() {
 #[test]
 fn intervals_beside_a_parameter_at_its_bound_hold_the_truth() {
     let subject: Subject = ("neo-hooke-simo-pister", &[0.05, 0.49]);
-    let actual = Held::of(subject, &|seed| {
+    let actual = coverage(subject, &|seed| {
         let row = |share: f64| [1.0 + 0.8 * share, stress(subject, "uniaxial", 0.8 * share)];
         let noise = 0.01 * stress(subject, "uniaxial", 0.8);
         let head = "# test: uniaxial\nstretch [-],nominal_stress [MPa]\n";
@@ -116,7 +75,7 @@ fn intervals_beside_a_parameter_at_its_bound_hold_the_truth() {
 fn tests_of_unequal_noise_have_intervals_that_hold_the_truth() {
     let subject: Subject = ("mooney-rivlin", &[0.04, 0.01]);
     for noises in [[1e-2, 1e-3, 1e-3], [1e-3, 1e-3, 1e-2], [1e-3; 3]] {
-        let actual = Held::of(subject, &|seed| {
+        let actual = coverage(subject, &|seed| {
             let tests = ["uniaxial", "planar", "equibiaxial"]
                 .into_iter()
                 .enumerate();

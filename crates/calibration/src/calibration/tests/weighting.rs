@@ -1,13 +1,10 @@
 //! What is said of the residuals of laws with noise that is proportional to the stress, or the same everywhere, by the weights
 //! that suit it; and of strains that were commanded.
 
-use rayon::prelude::*;
-
-use super::helpers::{fit_with, law, parsed, uniaxial, weighted};
+use super::helpers::{Coverage, fit_with, law, parsed, uniaxial, weighted};
 use crate::calibration::*;
 use crate::statistics::normal_numbers;
 
-const SEEDS: u64 = 40;
 const NOISE: f64 = 0.03;
 
 /// A law, its values and the stretch to which it is pulled.
@@ -51,50 +48,15 @@ fn fitted(name: &str, tests: &[TestData], weighting: Weighting) -> Quality {
     fit_with(name, tests, &weighted(weighting)).unwrap().quality
 }
 
-/// How many fits were called systematic, intervals that hold the truth, and intervals.
-#[derive(Clone, Copy, Debug, Default)]
-struct Counts {
-    systematic: usize,
-    held: usize,
-    intervals: usize,
-    vague: usize,
-}
-
-impl Counts {
-    fn of(quality: &Quality, truth: &[f64]) -> Self {
-        let verdict = quality.verdict.unwrap().answer;
-        let pairs = quality.estimates.iter().zip(truth);
-        let held = pairs.filter(|(one, truth)| one.holds(**truth));
-        let counted = usize::from(verdict.has_intervals());
-        Self {
-            systematic: usize::from(verdict == Answer::Systematic),
-            held: counted * held.count(),
-            intervals: counted * truth.len(),
-            vague: counted * usize::from(!quality.is_identifiable()),
-        }
-    }
-
-    fn add(self, other: Self) -> Self {
-        Self {
-            systematic: self.systematic + other.systematic,
-            held: self.held + other.held,
-            intervals: self.intervals + other.intervals,
-            vague: self.vague + other.vague,
-        }
-    }
-}
-
-fn counts(tests: &[&str], subject: Subject, weighting: Weighting) -> Counts {
-    let one = |seed: u64| {
-        let test = |(number, name): (usize, &&str)| {
-            let points = 40 / tests.len();
-            measured(name, subject, weighting, points, 3 * seed + number as u64)
+fn coverage(tests: &[&str], subject: Subject, weighting: Weighting) -> Coverage {
+    let points = 40 / tests.len();
+    Coverage::over_seeds(subject.1, |seed| {
+        let test = |(name, number): (&&str, u64)| {
+            measured(name, subject, weighting, points, 3 * seed + number)
         };
-        let data: Vec<TestData> = tests.iter().enumerate().map(test).collect();
-        Counts::of(&fitted(subject.0, &data, weighting), subject.1)
-    };
-    let all = (0..SEEDS).into_par_iter().map(one);
-    all.reduce(Counts::default, Counts::add)
+        let data: Vec<TestData> = tests.iter().zip(0..).map(test).collect();
+        fitted(subject.0, &data, weighting)
+    })
 }
 
 /// One fit in a hundred may be called systematic, and one interval in twenty may miss the truth.
@@ -102,20 +64,20 @@ fn counts(tests: &[&str], subject: Subject, weighting: Weighting) -> Counts {
 fn noise_that_suits_the_weights_is_called_noise_and_intervals_hold_the_truth() {
     const ALL: [&str; 3] = ["uniaxial", "planar", "equibiaxial"];
     for weighting in [Weighting::Absolute, Weighting::Relative] {
-        let mut sum = Counts::default();
+        let mut sum = Coverage::default();
         for subject in SUBJECTS {
-            let actual = counts(&ALL[..1], subject, weighting);
+            let actual = coverage(&ALL[..1], subject, weighting);
             assert!(
                 actual.systematic <= 3,
                 "{} {weighting:?}: {actual:?}",
                 subject.0
             );
-            sum = sum.add(actual);
+            sum = sum.plus(actual);
         }
-        let joint = counts(&ALL, ("mooney-rivlin", &[0.04, 0.01], 1.6), weighting);
+        let joint = coverage(&ALL, ("mooney-rivlin", &[0.04, 0.01], 1.6), weighting);
         assert!(joint.systematic <= 3 && joint.vague == 0, "{joint:?}");
-        sum = sum.add(joint);
-        let share = sum.held as f64 / sum.intervals as f64;
+        sum = sum.plus(joint);
+        let share = sum.share();
         assert!(sum.systematic <= 8, "{weighting:?}: {sum:?}");
         assert!((0.92..=0.99).contains(&share), "{weighting:?}: {sum:?}");
     }
