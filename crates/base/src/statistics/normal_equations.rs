@@ -40,7 +40,7 @@ mod tests {
         let weight = |row: usize| 1.0 + row as f64 % 3.0;
         let weighted = DMatrix::from_fn(rows, 3, |row, column| weight(row) * design[(row, column)]);
         let (normal, right) = normal_equations(&design, &residual, weight);
-        // Sums of whole numbers are exact.
+        // Sums of integers are exact.
         assert_eq!(normal, weighted.transpose() * &design);
         assert_eq!(right, weighted.transpose() * residual);
     }

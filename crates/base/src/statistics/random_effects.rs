@@ -1,4 +1,4 @@
-//! The mean of several specimens, of which each is known with its own uncertainty.
+//! The mean of several specimens, each of which is known with an uncertainty.
 //!
 //! ```text
 //! yᵢ = μ + bᵢ + eᵢ,   bᵢ ~ N(0, τ²),   eᵢ ~ N(0, sᵢ²),   Σ wᵢ (yᵢ − μ)² = n − 1,   wᵢ = 1/(sᵢ² + τ²)

@@ -34,7 +34,7 @@ pub struct BSpline {
 const GRADING: f64 = 2.0;
 
 /// The exponent of the distance from an end that weights roughness there: for a function that goes like r⁰·⁶ at the
-/// end, as displacements do beside a clamp, r² f″² is integrable.
+/// end, as displacements do near a clamp, r² f″² is integrable.
 const WEIGHT: i32 = 2;
 
 impl BSpline {
@@ -112,8 +112,8 @@ impl BSpline {
         }
     }
 
-    /// The first function that is not zero at `x`, and the derivatives of some order of it and the next ones; beyond
-    /// the range the outermost polynomials continue.
+    /// The first function that is not zero at `x`, and the derivatives of order `order` of it and the following ones; outside
+    /// of the range the outermost polynomials continue.
     ///
     /// ```text
     /// Bⱼ,q = (s − tⱼ)/(tⱼ₊q − tⱼ) Bⱼ,q₋₁ + (tⱼ₊q₊₁ − s)/(tⱼ₊q₊₁ − tⱼ₊₁) Bⱼ₊₁,q₋₁     knots t, s = (x − low)/h

@@ -88,7 +88,7 @@ impl Group {
         })
     }
 
-    /// Where stresses are compared: protocols in three ratios of the largest strains of biaxial tests, the test's own strains of others.
+    /// The states at which stresses are compared: for biaxial tests, protocols in three ratios of the largest strains.
     fn positions(reached: [f64; 2], test: Test) -> Vec<Observation> {
         const RATIOS: [[f64; 2]; 3] = [[1.0, 1.0], [1.0, 0.5], [0.5, 1.0]];
         let ratios = match test {

@@ -12,7 +12,7 @@
 //! ```
 //!
 //! c is the effect of the tines. Interpolated to all rows (cubic radial functions), m and c turn each measured force into the stress that
-//! the middle carried at its own stretches, to which the law is fitted as to any test. What c and m change with the law enters by its
+//! the middle carried at its stretches, to which the law is fitted as to any test. What c and m change with the law enters by its
 //! derivatives, taken from the finite elements of laws nearby: the fit is that of the finite elements once it does not change, and so are
 //! its intervals.
 //!

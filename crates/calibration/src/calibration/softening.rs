@@ -79,7 +79,7 @@ pub fn fit_softening(base: Base, tests: &[TestData], settings: &FitSettings) -> 
     softened(fit, base, tests, softening).that_follows(tests)
 }
 
-/// Values of r, m and β behind those of the law, at which the search begins; `largest` is the largest energy of the tests in mJ/mm³.
+/// Starts of the search: values of the law, followed by r, m and β; `largest` is the largest energy of the tests in mJ/mm³.
 fn starts(of_law: &[f64], bounds: &[[f64; 2]], largest: f64) -> Vec<Vec<f64>> {
     let mut starts = Vec::new();
     for r in [1.3, 2.0, 4.0] {

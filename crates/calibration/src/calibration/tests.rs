@@ -149,7 +149,7 @@ fn all_laws_are_ranked_and_fibres_need_two_directions() {
             .all(|pair| pair[0].quality.aicc <= pair[1].quality.aicc)
     );
     assert!(fits[0].law.name.starts_with("ogden"));
-    // The nearest one has six parameters, not all of which these data tell.
+    // The nearest one has six parameters, not all of which these data determine.
     assert!(!fits[0].quality.is_identifiable());
     let last = fits[fits.len() - 2..].iter().map(|fit| fit.law.name);
     let mut last: Vec<&str> = last.collect();

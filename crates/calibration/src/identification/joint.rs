@@ -1,4 +1,4 @@
-//! One motion behind both signals.
+//! The motion from which both signals follow.
 
 use nalgebra::{DMatrix, DVector};
 

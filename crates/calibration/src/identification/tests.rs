@@ -230,7 +230,7 @@ fn a_recording_of_two_thirds_of_the_instants_has_the_functions_of_the_whole_one(
     }
 }
 
-/// The way by polynomials, which is taken where the direct one does not converge, leads to the same functions.
+/// The iteration that begins with polynomials, for cases in which the direct one does not converge, leads to the same functions.
 #[test]
 fn from_the_motion_of_polynomials_the_functions_are_the_same() {
     let recording = Sample::default().recording();

@@ -11,7 +11,7 @@ fn design(points: usize) -> DMatrix<f64> {
     })
 }
 
-/// What a fit leaves of noise whose neighbours correlate by so much, and the errors of its estimates.
+/// The residual of a fit to noise whose neighbours have a correlation, and the errors of its estimates.
 fn residual_and_errors(design: &DMatrix<f64>, correlation: f64, seed: u64) -> [DVector<f64>; 2] {
     let mut normal = normal_numbers(seed);
     let mut last = normal();

@@ -61,7 +61,7 @@ fn noise_that_grows_is_found() {
     }
 }
 
-/// Few markers tell of noise that is fourfold at both ends, most times.
+/// With few markers, noise that is fourfold at both ends is found in most cases.
 #[test]
 fn few_places_tell_of_noise_that_grows_much() {
     let positions = grid([15, 6]);

@@ -273,7 +273,7 @@ pub fn reversals(head: &Head, test: Test, rows: &[(usize, f64)]) -> Option<Diagn
 mod tests {
     use super::*;
 
-    /// Straight lines through some values with so many rows each.
+    /// Straight lines through some values with `rows` rows each.
     fn path(values: &[f64], rows: usize) -> Vec<f64> {
         let pieces = values.windows(2).flat_map(|pair| {
             let (from, to) = (pair[0], pair[1]);

@@ -96,7 +96,7 @@ pub fn torn_rows(strains: &[f64], stresses: &[f64]) -> Vec<usize> {
 mod tests {
     use super::*;
 
-    /// A curve of a gel with noise of a thousandth, loaded and unloaded so many times.
+    /// The curve of a gel with noise of a thousandth, loaded and unloaded in turn.
     fn record(turns: usize) -> (Vec<f64>, Vec<f64>) {
         let rows = 60 * turns;
         let strains = (0..rows).map(|row| {

@@ -62,7 +62,7 @@ pub fn stress_at_rest(head: &Head, observations: &[Observation]) -> Option<Diagn
     let bends = rows
         .windows(3)
         .map(|triple| (triple[0] - 2.0 * triple[1] + triple[2]).abs());
-    // Of the second differences of white noise, whose variance is six times its own.
+    // The variance of the second differences of white noise is six times that of the noise.
     let noise = 1.4826 * median(bends) / 6.0_f64.sqrt();
     let is_at_rest = first
         .strains

@@ -75,7 +75,7 @@ fn error_percent(fit: &Fit, law: &dyn HyperelasticLaw, strain: f64) -> f64 {
     errors[0].max(errors[1])
 }
 
-/// A fit to the record of a law, whose stresses are right to so many per cent, and most of whose intervals hold the right values.
+/// The fit to the record of a law, whose stresses must deviate from those of the law by less than `percent`.
 fn accurate_fit(name: &str, right: &[f64], tests: &[TestData], percent: f64) -> Fit {
     let law = law(name, right);
     let actual = fitted(name, tests);

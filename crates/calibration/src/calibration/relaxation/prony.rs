@@ -42,7 +42,7 @@ pub struct Viscous<'a> {
 }
 
 impl<'a> Viscous<'a> {
-    /// A law with so many parameters.
+    /// A law with `of_law` parameters.
     pub fn new(
         law: &'static Law,
         of_law: usize,

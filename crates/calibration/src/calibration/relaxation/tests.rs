@@ -281,7 +281,7 @@ fn what_cannot_be_fitted_is_told_with_a_remedy() {
     }
 }
 
-/// A relaxation slower than the test: its time is at the bound, and the fit says so.
+/// A relaxation slower than the test: its time is at the bound, which is reported.
 #[test]
 fn a_time_beyond_the_data_is_told() {
     let material = series(&[(0.5, 3000.0)]);

@@ -17,7 +17,7 @@ const TRUTH: Softening = Softening {
 };
 const C10: f64 = 0.21;
 
-/// Three cycles to rising stretches and a fourth to the second one again, with so many rows a branch.
+/// Three cycles to rising stretches and a fourth to the second one again, with `rows` rows a branch.
 fn strains(rows: i32) -> Vec<f64> {
     let tops = [0.4, 0.8, 1.2, 0.8];
     let branch = |top: f64, row: i32| top * f64::from(row) / f64::from(rows);
@@ -42,7 +42,7 @@ fn record_after(earlier: f64, test: &str, noise: f64, seed: u64) -> TestData {
             let actual = law.tension([1.0, 0.0], x);
             [actual.nominal_stress, actual.energy]
         }
-        // Both stretches alike: 2 P dλ is the work.
+        // Both stretches are equal: 2 P dλ is the work.
         _ => {
             let l: f64 = 1.0 + x;
             let energy = C10 * (2.0 * l * l + l.powi(-4) - 3.0);
@@ -122,7 +122,7 @@ fn the_work_of_a_measured_cycle_comes_to_the_closed_form() {
     );
 }
 
-/// The 95 % intervals of noisy cycles hold the truth as often as they say.
+/// The 95 % intervals of noisy cycles hold the true values in 89 to 99 of 100 cases.
 #[test]
 fn intervals_of_noisy_cycles_hold_the_truth() {
     let seeds = 100;

@@ -181,11 +181,11 @@ fn a_stated_parameter_is_not_fitted() {
             [format!("{key}={value}..{value}")]
         );
     }
-    // Stresses are completed beside what is stated.
+    // Parameters that are stresses are fitted given the stated one.
     let actual = of(law, &data, &stated("c10", 0.05));
     assert_eq!(actual.parameters[0].value, 0.05);
     assert!(actual.quality.sum_of_squares > free.quality.sum_of_squares);
-    // An angle beyond the period is what it says.
+    // A stated angle outside of the usual range is taken as it is.
     let actual = of(law, &data, &stated("angle", -0.35));
     assert_eq!(actual.parameters[5].value, -0.35);
     let refused = fit_with(law, std::slice::from_ref(&data), &stated("delta", 1.5));

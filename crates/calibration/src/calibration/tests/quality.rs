@@ -77,7 +77,7 @@ fn the_figures_of_a_fit_are_as_defined() {
     assert_eq!(few.quality.aicc, f64::INFINITY);
 }
 
-/// σ = C₁₀ f + C₀₁ f/λ is linear: two columns tell what the noise along the curve makes of both parameters.
+/// σ = C₁₀ f + C₀₁ f/λ is linear: two columns give the uncertainty of both parameters by the noise along the curve.
 #[test]
 fn two_parameters_have_the_uncertainty_of_linear_regression() {
     for sign in [1.0, -1.0] {

@@ -1,4 +1,4 @@
-//! Simple shear beside tension: the shear stress of a block between two plates.
+//! Simple shear together with tension: the shear stress of a block between two plates.
 
 use super::helpers::{assert_parameters, fitted, parsed, uniaxial};
 use crate::calibration::{FitSettings, Memory, Terms, TestData};

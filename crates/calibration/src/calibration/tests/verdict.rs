@@ -8,7 +8,7 @@ use crate::statistics::normal_numbers;
 
 const YEOH: [f64; 3] = [0.05, 0.02, 0.002];
 
-/// A uniaxial test of Yeoh's law to λ = 2, a point for each value of noise in MPa, its stresses with so many decimals.
+/// A uniaxial test of Yeoh's law to λ = 2, a point for each value of noise in MPa, its stresses with `decimals` decimals.
 fn curve(noise: &[f64], decimals: usize) -> [TestData; 1] {
     let law = law("yeoh", &YEOH);
     let count = noise.len() as f64;
@@ -21,7 +21,7 @@ fn curve(noise: &[f64], decimals: usize) -> [TestData; 1] {
     [uniaxial(&rows)]
 }
 
-/// Noise of 0.005 MPa, about 1 % of the largest stress, whose neighbours correlate by so much.
+/// Noise of 0.005 MPa, about 1 % of the largest stress, whose neighbours have a correlation.
 fn noise(count: usize, correlation: f64, seed: u64) -> Vec<f64> {
     let mut normal = normal_numbers(seed);
     let mut last = normal();
@@ -82,7 +82,7 @@ fn the_band_of_a_curve_is_that_of_its_combination_of_parameters() {
     assert!((band / noise.half_width(&gradient) - 1.0).abs() < 1e-5);
 }
 
-/// Forty times as many points: bins lose nothing of the law, nor of what so many points tell.
+/// Forty times as many points: bins preserve the law, and the information of so many points.
 #[test]
 fn many_points_are_gathered_without_loss() {
     let [many, few] =
@@ -100,7 +100,7 @@ fn many_points_are_gathered_without_loss() {
     assert!(effective > 1_500.0 && effective < 6_000.0, "{effective}");
 }
 
-/// A file whose rows are in no order: neighbours in strain are alike, neighbours in the file are not.
+/// A file whose rows are in no order: neighbours in strain correlate, neighbours in the file do not.
 #[test]
 fn noise_that_correlates_along_the_strain_is_found_in_any_order_of_rows() {
     let actual = (0..5).filter(|seed| {

@@ -18,7 +18,7 @@ const SUBJECTS: [Subject; 5] = [
     ("ogden-1", &[0.05, 3.0], 2.0),
 ];
 
-/// A test of a law with so many points and noise that suits the weighting.
+/// A test of a law with `points` points and noise that suits the weighting.
 fn measured(
     test: &str,
     subject: Subject,

@@ -185,8 +185,8 @@ impl FitResiduals<'_> {
         growing_sizes(&rows, self.residual, other)
     }
 
-    /// The size of the noise of every row over that of all, beside what it grows by along the curves: of a curve by itself where curves differ
-    /// by more than chance, else 1; and how many times the largest is larger than the smallest.
+    /// The size of the noise of every row relative to that of all, after division by the sizes that change along the curves: one size for each
+    /// curve where curves differ significantly, else 1; and the ratio of the largest to the smallest size.
     fn sizes(&self, grown: &DVector<f64>) -> (DVector<f64>, f64) {
         let rows = self.residual.len();
         let even = self.residual.component_div(grown);
@@ -229,9 +229,9 @@ impl FitResiduals<'_> {
     }
 }
 
-/// The curves with the noise of their strains left out: where the strain of a test only jitters about one that grows or falls, the rows have
-/// its values in their order, and with them the derivatives and the sizes of the noise. Else the noise of the strain, which is also in the residuals, would look like a
-/// function of it beside a slow drift.
+/// The curves without the noise of their strains: where the strain of a test jitters about one that grows or falls, its values are sorted, and
+/// with them the derivatives and the sizes of the noise. Otherwise the residuals, which include the noise of the strain, would be a function
+/// of the strain.
 struct Steady {
     curves: Vec<Rows>,
     design: DMatrix<f64>,
@@ -295,8 +295,8 @@ fn orders(curves: &[Rows]) -> Vec<Vec<Curve>> {
     }
 }
 
-/// Legendre polynomials of the strain along each curve, a column each; a curve with more points has more of them, up to some
-/// beyond the number of estimates, whose law follows the first ones.
+/// Legendre polynomials of the strain along each curve, a column each. Their number grows with the points of the curve, up to four more than
+/// there are estimates: the law can follow the first ones.
 fn smooth_functions(curves: &[Rows], rows: usize, estimates: usize) -> DMatrix<f64> {
     const MORE: usize = 4;
     const POINTS_EACH: usize = 3;

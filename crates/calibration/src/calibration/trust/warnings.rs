@@ -36,7 +36,7 @@ pub fn warnings(quality: &Quality, parameters: &[Parameter], rival: Option<&Riva
         .collect()
 }
 
-/// Whether noise makes a minimum so much worse, though its parameters are the true ones, in more than a twentieth of tests:
+/// Whether the sum of squares at the true parameters is, by noise, as much larger than the minimum in more than a twentieth of tests:
 /// F = (S′/S − 1) (nₑ − k)/k.
 fn is_possible(rival: &Rival, quality: &Quality) -> bool {
     let parameters = rival.values.len() as f64;

@@ -1,4 +1,4 @@
-//! Recordings that bend the functions, or say little of them: what is told of each.
+//! Recordings that bias the functions, or determine them poorly, and the verdicts on them.
 
 use super::*;
 use crate::statistics::normal_numbers;

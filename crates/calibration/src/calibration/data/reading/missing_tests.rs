@@ -1,4 +1,4 @@
-//! What test data must say and do not.
+//! Statements that test data must make and do not.
 
 use super::tests::read;
 

@@ -1,4 +1,4 @@
-//! Columns that machines name in their own way, and rows that are no measurements.
+//! Columns with the names of machines, and rows that are no measurements.
 
 use super::tests::{SPECIMEN, read, record};
 use crate::calibration::{Observation, TestData, Times};
@@ -62,7 +62,7 @@ fn rows_behind_a_rupture_are_left_out_and_told() {
     );
 }
 
-/// As laboratories write them in German, where neither displacements nor forces stand beside.
+/// As German laboratories write them, without columns of displacements and forces.
 #[test]
 fn strains_and_stresses_that_machines_evaluate_are_read_alone_and_are_no_second_ones() {
     let stated = [

@@ -217,7 +217,7 @@ fn a_test_stretched_across_is_drawn_over_that_axis() {
     assert!((path[10].strains[1] - 0.2).abs() < 1e-15 && path[10].strains[0] == 0.0);
 }
 
-/// Force and displacement of neo-Hooke with E = 0.3 MPa: a specimen of 20 mm × 5 mm × 2 mm that is slack over so many mm.
+/// Force and displacement of neo-Hooke with E = 0.3 MPa: a specimen of 20 mm × 5 mm × 2 mm that is slack over `slack` mm.
 fn force(u: f64, slack: f64) -> f64 {
     let l = 1.0 + (u - slack).max(0.0) / 20.0;
     10.0 * 0.1 * (l - l.powi(-2))
