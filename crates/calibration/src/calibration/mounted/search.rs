@@ -122,10 +122,11 @@ impl<'a> Search<'a> {
         strains: [f64; 2],
         [first, others @ ..]: [Option<&SheetState>; 3],
     ) -> Result<Vec<SheetState>, SolveFault> {
-        let begin = self.states(strains, first);
-        others.into_iter().fold(begin, |result, start| {
-            result.or_else(|_| self.states(strains, start))
-        })
+        let mut result = self.states(strains, first);
+        for start in others {
+            result = result.or_else(|_| self.states(strains, start));
+        }
+        result
     }
 
     /// The states of all laws at some strains: those of the others begin at that of the first one.
