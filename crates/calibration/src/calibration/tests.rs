@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use super::*;
+use crate::assertions::assert_contains;
 use crate::document::Statements;
 use crate::material::Card;
 use crate::material::curve::Mode;
@@ -202,10 +203,7 @@ fn bounds_weights_and_few_points_are_respected() {
     assert!(relative.rmse > absolute.rmse);
     // The floor of the relative residuals is said, and holds.
     let message = Weighting::Relative.describe();
-    assert!(
-        message.contains("1 % of the test's largest stress"),
-        "{message}"
-    );
+    assert_contains(&message, "1 % of the test's largest stress");
     let small = Observation {
         stress: 1e-6 * tests[0].largest_stress,
         ..tests[0].observations[0]
@@ -217,14 +215,11 @@ fn bounds_weights_and_few_points_are_respected() {
     let refused = fit_with("gent", &few, &FitSettings::default())
         .unwrap_err()
         .to_string();
-    assert!(
-        refused.contains("2 parameters need at least 3 points"),
-        "{refused}"
-    );
+    assert_contains(&refused, "2 parameters need at least 3 points");
     let refused = fit_with("gent", &tests, &bounded("jn", [1.0, 2.0]))
         .unwrap_err()
         .to_string();
-    assert!(refused.contains("did you mean `jm`"), "{refused}");
+    assert_contains(&refused, "did you mean `jm`");
 }
 
 #[test]
@@ -288,7 +283,7 @@ fn every_bound_is_kept_or_refused() {
         ("gent", "jm", [-5.0, -1.0]),
     ] {
         let refused = with(law, key, range).unwrap_err().to_string();
-        assert!(refused.contains("allow no value of the law"), "{refused}");
+        assert_contains(&refused, "allow no value of the law");
     }
 }
 

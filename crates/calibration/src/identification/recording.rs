@@ -227,6 +227,7 @@ impl Reader<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::assertions::assert_contains;
 
     fn rows(count: usize) -> String {
         let row = |i: usize| format!("{},{},{}\n", 2 * i, 1.0 + 0.1 * (i % 7) as f64, 3 * (i % 7));
@@ -273,27 +274,29 @@ mod tests {
         ] {
             assert!(output.contains(part), "{part}: {output}");
         }
-        let output = |text: &str| read(text).unwrap_err().to_string();
         let head = "time [s],extension [mm],force [N]\n";
-        assert!(output(&format!("{head}{}", rows(20))).contains("20 instants are too few"));
-        assert!(
-            output(&format!("{head}1,2,3\n1,2,4\n"))
-                .contains("a.csv:3: time 1 s does not come after 1 s")
-        );
-        assert!(
-            output(&format!("time [s],stretch,force [N]\n{}", rows(40)))
-                .contains("the length is not stated")
-        );
-        assert!(
-            output(&format!("{head}{}x,1,2\n", rows(40)))
-                .contains("column `time`: \"x\" is not a number")
-        );
+        let stretch = "time [s],stretch,force [N]\n";
+        let (few, many) = (rows(20), rows(40));
+        for (text, fault) in [
+            (format!("{head}{few}"), "20 instants are too few"),
+            (
+                format!("{head}1,2,3\n1,2,4\n"),
+                "a.csv:3: time 1 s does not come after 1 s",
+            ),
+            (format!("{stretch}{many}"), "the length is not stated"),
+            (
+                format!("{head}{many}x,1,2\n"),
+                "column `time`: \"x\" is not a number",
+            ),
+        ] {
+            assert_contains(&read(&text).unwrap_err().to_string(), fault);
+        }
         let given = Statements::from([("length".to_owned(), "5 mm".to_owned())]);
-        let table = Table::parse("a.csv", &format!("# length: 4 mm\n{head}{}", rows(40))).unwrap();
+        let table = Table::parse("a.csv", &format!("# length: 4 mm\n{head}{many}")).unwrap();
         let output = Recording::of_table(&table, &given).unwrap_err().to_string();
-        assert!(
-            output.contains("4 mm according to the header and 5 mm according to the command line"),
-            "{output}"
+        assert_contains(
+            &output,
+            "4 mm according to the header and 5 mm according to the command line",
         );
     }
 }

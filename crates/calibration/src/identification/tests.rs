@@ -2,6 +2,7 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use super::*;
+use crate::assertions::assert_contains;
 use crate::document::{Statements, Table};
 
 mod recordings;
@@ -82,24 +83,15 @@ fn constants_and_polynomials_come_back_with_their_coefficients() {
         assert!(estimate.standard_error < 1e-4 * truth);
     }
     let text = law_text(&actual, &recording, "a.csv");
-    assert!(
-        text.contains("coefficients = [\"0.2 N/mm\", \"0.01 N/mm\"]"),
-        "{text}"
-    );
-    assert!(
-        text.contains("kind = \"constant\"\nvalue = \"0.05 N·s/mm\""),
-        "{text}"
-    );
+    assert_contains(&text, "coefficients = [\"0.2 N/mm\", \"0.01 N/mm\"]");
+    assert_contains(&text, "kind = \"constant\"\nvalue = \"0.05 N·s/mm\"");
     let specimen = Recording {
         length: Some(50.0),
         area: Some(10.0),
         ..recording
     };
     let text = law_text(&actual, &specimen, "a.csv");
-    assert!(
-        text.contains("coefficients = [\"1.0 MPa\", \"2.5 MPa\"]"),
-        "{text}"
-    );
+    assert_contains(&text, "coefficients = [\"1.0 MPa\", \"2.5 MPa\"]");
 }
 
 #[test]
@@ -116,10 +108,7 @@ fn a_dashpot_may_depend_on_the_rate() {
         assert!((d / damping(v) - 1.0).abs() < 5e-3, "{v}: {d}");
     }
     let text = law_text(&actual, &recording, "a.csv");
-    assert!(
-        text.contains("of = \"stretch rate\"\nkind = \"table\"\nat = ["),
-        "{text}"
-    );
+    assert_contains(&text, "of = \"stretch rate\"\nkind = \"table\"\nat = [");
 }
 
 #[test]
@@ -149,7 +138,7 @@ fn a_shape_is_kept_against_the_data() {
     let message = identify(&recording, wanted, &|_| ())
         .unwrap_err()
         .to_string();
-    assert!(message.contains("only splines"), "{message}");
+    assert_contains(&message, "only splines");
 }
 
 #[test]

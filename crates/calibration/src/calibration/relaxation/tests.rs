@@ -7,6 +7,7 @@ use rand_chacha::ChaCha8Rng;
 use rayon::prelude::*;
 
 use super::*;
+use crate::assertions::assert_contains;
 use crate::calibration::tests::helpers::{assert_parameters, law, parsed, uniaxial};
 use crate::calibration::*;
 use crate::material::Card;
@@ -277,7 +278,7 @@ fn what_cannot_be_fitted_is_told_with_a_remedy() {
         let law = Law::named(law).unwrap();
         let output = fit_relaxation(law, tests, &FitSettings::default(), Terms::Automatic);
         let output = output.map(|_| ()).unwrap_err().to_string();
-        assert!(output.contains(message), "{output}");
+        assert_contains(&output, message);
     }
 }
 

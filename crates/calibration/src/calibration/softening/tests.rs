@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use super::*;
+use crate::assertions::assert_contains;
 use crate::calibration::tests::helpers::assert_parameters;
 use crate::calibration::*;
 use crate::document::Statements;
@@ -205,6 +206,6 @@ fn an_earlier_stretch_is_read_and_must_be_possible() {
     assert_eq!(read("0.75", pressed).unwrap(), Some(-0.25));
     for (stated, columns) in [("50 %", tension), ("1.5", pressed)] {
         let fault = read(stated, columns).unwrap_err().to_string();
-        assert!(fault.contains("earlier stretch"), "{fault}");
+        assert_contains(&fault, "earlier stretch");
     }
 }

@@ -174,7 +174,7 @@ fn a_stated_parameter_is_not_fitted() {
         assert!(quality.estimates[index].standard_error.is_nan());
         let tests = std::slice::from_ref(&data);
         let text = card_text(&actual, tests, &Provenance::default());
-        assert!(text.contains("# held, not fitted"), "{text}");
+        assert_contains(&text, "# held, not fitted");
         let again = Card::parse("card", "card", &text).unwrap();
         assert_eq!(
             again.fit.unwrap().bounds,

@@ -5,6 +5,7 @@ use std::path::Path;
 use nalgebra::{DMatrix, DVector};
 
 use super::helpers::{bounded, fit_with, fitted, uniaxial, weighted};
+use crate::assertions::assert_contains;
 use crate::calibration::*;
 use crate::document::Statements;
 use crate::material::curve::Mode;
@@ -167,9 +168,9 @@ fn stress_measures_are_not_mixed() {
     let tests = [read("a.csv", "nominal"), read("b.csv", "cauchy")];
     let refused = fit_with("neo-hooke", &tests, &FitSettings::default());
     let refused = refused.unwrap_err().to_string();
-    assert!(
-        refused.contains("a.csv gives nominal stress and b.csv gives cauchy"),
-        "{refused}"
+    assert_contains(
+        &refused,
+        "a.csv gives nominal stress and b.csv gives cauchy",
     );
 }
 
@@ -221,9 +222,6 @@ fn a_card_is_called_by_the_names_of_its_files() {
         ..Provenance::default()
     };
     let card = card_text(&actual, &tests(&[(1.1, 0.03)]), &provenance);
-    assert!(
-        card.contains("title = \"neo-hooke fitted to export.csv\""),
-        "{card}"
-    );
-    assert!(card.contains("data = [\"../../export.csv\"]"), "{card}");
+    assert_contains(&card, "title = \"neo-hooke fitted to export.csv\"");
+    assert_contains(&card, "data = [\"../../export.csv\"]");
 }

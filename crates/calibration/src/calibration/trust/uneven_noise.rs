@@ -173,6 +173,7 @@ fn specimens_differ(factors: &[f64], has_intervals: bool) -> String {
 
 #[cfg(test)]
 mod tests {
+    use crate::assertions::assert_contains;
     use crate::calibration::tests::helpers::{fit_with, fitted, parsed, uniaxial, weighted};
     use crate::calibration::{TestData, Weighting};
     use crate::statistics::normal_numbers;
@@ -245,15 +246,9 @@ mod tests {
             );
             assert!(!warned.contains("their mean gives"), "{warned}");
             let warned = of_strips(moduli, [Some("a"), Some("b"), Some("c")]);
-            assert!(
-                warned.contains("the specimens differ by more than the noise"),
-                "{warned}"
-            );
+            assert_contains(&warned, "the specimens differ by more than the noise");
             let warned = of_strips(moduli, [Some("a"); 3]);
-            assert!(
-                warned.contains("this law does not explain the specimen"),
-                "{warned}"
-            );
+            assert_contains(&warned, "this law does not explain the specimen");
         }
         for names in [unstated, [Some("a"); 3], [Some("a"), Some("b"), Some("c")]] {
             let warned = of_strips([0.05; 3], names);
@@ -300,7 +295,7 @@ mod tests {
         };
         let in_one = warned(&[parts.concat()], "");
         assert_eq!(in_one, warned(&parts, ""));
-        assert!(in_one.contains("--one-specimen"), "{in_one}");
+        assert_contains(&in_one, "--one-specimen");
         let stated = warned(&parts, "# specimen name: a\n");
         assert!(
             stated.starts_with("this law does not explain the specimen"),

@@ -3,6 +3,7 @@
 
 use super::layouts_tests::{SPECIMEN, Value, is_right, rows, stress};
 use super::tests::read;
+use crate::assertions::assert_contains;
 
 /// A quantity with its unit, and its values by the strain.
 type Quantity = (&'static str, &'static str, Value);
@@ -105,7 +106,7 @@ fn two_axes_of_displacements_and_forces_need_the_thickness_alone_where_sizes_are
         }
     }
     let missing = read(&table(&columns[2..], 1, ","), &[("thickness", "1 mm")]).unwrap_err();
-    assert!(missing.contains("the length is not stated"), "{missing}");
+    assert_contains(&missing, "the length is not stated");
 }
 
 #[test]
@@ -180,7 +181,7 @@ fn rows_are_chosen_by_lines_columns_and_strains_and_signs_are_reversed() {
         ("flip", "time", "the flip `time` is not known"),
     ] {
         let fault = read(text, &[&SPECIMEN[..], &[(key, value)]].concat()).unwrap_err();
-        assert!(fault.contains(message), "{fault}");
+        assert_contains(&fault, message);
     }
 }
 

@@ -1,6 +1,7 @@
 //! Tables of one specimen in the layouts that people have: each gives the right curve, or a question.
 
 use super::tests::read;
+use crate::assertions::assert_contains;
 use crate::calibration::TestData;
 
 /// The stress of the specimen, 20 mm long with 10 mm², at a strain.
@@ -212,9 +213,9 @@ fn a_remark_in_brackets_is_no_unit_where_a_line_below_has_units() {
     let data = read(text, &reading).unwrap();
     assert!((data.observations[1].strains[0] - 0.1).abs() < 1e-15);
     let sentence = data.table.sentence();
-    assert!(
-        sentence.contains("nominal strain from `Tensile strain (Strain 1)` [%], force from `Load` [N] over 10 mm²; lines 3 to 4"),
-        "{sentence}"
+    assert_contains(
+        &sentence,
+        "nominal strain from `Tensile strain (Strain 1)` [%], force from `Load` [N] over 10 mm²; lines 3 to 4",
     );
 }
 
@@ -252,7 +253,7 @@ fn columns_that_are_stated_are_taken_whatever_their_names_are() {
         ("force=channel 2", "`force` is not a known quantity"),
     ] {
         let refused = read(text, &[&SPECIMEN[..], &[("columns", columns)]].concat()).unwrap_err();
-        assert!(refused.contains(message), "{refused}");
+        assert_contains(&refused, message);
         assert!(!refused.contains("there is no column of"), "{refused}");
     }
     let head = format!("# columns: strain=channel 1, stress=channel 2 [N]\n{text}");

@@ -1,6 +1,7 @@
 //! Statements that test data must make and do not.
 
 use super::tests::read;
+use crate::assertions::assert_contains;
 
 #[test]
 fn what_is_not_stated_is_asked_for_and_never_guessed() {
@@ -48,10 +49,7 @@ fn what_is_not_stated_is_asked_for_and_never_guessed() {
 fn all_that_is_missing_is_told_at_once() {
     let result = read("strain,stress\n0.1,0.2", &[]).unwrap_err();
     for key in ["test", "strain measure", "stress measure"] {
-        assert!(
-            result.contains(&format!("the {key} is not stated")),
-            "{result}"
-        );
+        assert_contains(&result, &format!("the {key} is not stated"));
     }
     let result = read("# test: uniaxial\nextension [mm],load [N]\n1,2", &[]).unwrap_err();
     assert_eq!(
@@ -71,7 +69,7 @@ fn stresses_against_the_strains_are_refused() {
     let text = "# test: uniaxial\nstretch,nominal_stress [MPa]\n1.0,0.001\n1.5,0.2";
     assert!(read(text, &[]).is_ok());
     let result = read(&text.replace("0.2", "-0.2"), &[]).unwrap_err();
-    assert!(result.contains("opposite to the strains"), "{result}");
+    assert_contains(&result, "opposite to the strains");
 }
 
 #[test]
@@ -79,7 +77,7 @@ fn a_stretch_is_a_ratio_unless_it_may_be_in_percent() {
     let text = "# test: uniaxial\nstretch,nominal_stress [MPa]\n1.5,0.2";
     assert!((read(text, &[]).unwrap().observations[0].strains[0] - 0.5).abs() < 1e-15);
     let result = read(&text.replace("1.5", "150"), &[]).unwrap_err();
-    assert!(result.contains("the strain unit is not stated"), "{result}");
+    assert_contains(&result, "the strain unit is not stated");
     let given = read(&text.replace("1.5", "150"), &[("strain unit", "%")]).unwrap();
     assert!((given.observations[0].strains[0] - 0.5).abs() < 1e-15);
 }

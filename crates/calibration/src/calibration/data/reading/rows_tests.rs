@@ -1,6 +1,7 @@
 //! Columns with the names of machines, and rows that are no measurements.
 
 use super::tests::{SPECIMEN, read, record};
+use crate::assertions::assert_contains;
 use crate::calibration::{Observation, TestData, Times};
 
 const NAMES: &str = "Time [s],Displacement [mm],Force [N]";
@@ -43,7 +44,7 @@ fn a_range_of_strains_is_that_of_the_strains_that_are_fitted() {
     };
     assert_eq!(times.len(), expected.len());
     let refused = with("0.3..").unwrap_err();
-    assert!(refused.contains("the strains go from 0.00"), "{refused}");
+    assert_contains(&refused, "the strains go from 0.00");
 }
 
 #[test]
@@ -92,17 +93,14 @@ fn rows_without_a_number_are_left_out_and_a_word_is_refused() {
     assert_eq!(strains.len(), 2);
     assert!((strains[1] - 0.4).abs() < 1e-15);
     let output = data.warnings[0].to_string();
-    assert!(
-        output.contains("without a number for strain or stress: 2"),
-        "{output}"
-    );
+    assert_contains(&output, "without a number for strain or stress: 2");
     let fault = read(&(head.to_owned() + "1.1,0.1\n1.2,lost\n"), &[]).unwrap_err();
     assert!(
         fault.contains("a.csv:4") && fault.contains("lost"),
         "{fault}"
     );
     let fault = read(&(head.to_owned() + "1.1,\n1.2,\n"), &[]).unwrap_err();
-    assert!(fault.contains("a.csv:3"), "{fault}");
+    assert_contains(&fault, "a.csv:3");
 }
 
 /// Of a record over time, whose time is not read where a row has none.

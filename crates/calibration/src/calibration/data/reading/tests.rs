@@ -1,6 +1,7 @@
 //! Reading of test data.
 
 use super::*;
+use crate::assertions::assert_contains;
 use crate::calibration::{Observation, Times};
 
 pub fn read(text: &str, reading: &[(&str, &str)]) -> Result<TestData, String> {
@@ -117,7 +118,7 @@ fn a_rare_unit_is_taken_where_it_is_stated() {
             "{unit}"
         );
         let output = data.table.sentence();
-        assert!(output.contains(&format!("` [{unit}]")), "{output}");
+        assert_contains(&output, &format!("` [{unit}]"));
     }
     assert!(
         read(force, &SPECIMEN)
@@ -146,10 +147,7 @@ fn a_loop_of_loading_and_unloading_is_told() {
     let data = read(text, &[]).unwrap();
     assert_eq!(data.observations.len(), 5);
     let warning = data.warnings[0].to_string();
-    assert!(
-        warning.contains("a.csv:6: the strain reverses once"),
-        "{warning}"
-    );
+    assert_contains(&warning, "a.csv:6: the strain reverses once");
 }
 
 /// Columns that do not fit together would be read in the measure of the first of them.
@@ -264,12 +262,9 @@ fn cycles_and_slack_of_a_record_are_found_and_told() {
     ] {
         let data = read(&record(1.3, names), &SPECIMEN).unwrap();
         let output = data.remarks.join("\n");
-        assert!(output.contains("3 cycles found"), "{output}");
-        assert!(
-            output.contains("the loading branch of the last is fitted"),
-            "{output}"
-        );
-        assert!(output.contains("slack up to 1.3"), "{output}");
+        assert_contains(&output, "3 cycles found");
+        assert_contains(&output, "the loading branch of the last is fitted");
+        assert_contains(&output, "slack up to 1.3");
         let (first, last) = (
             &data.observations[0],
             &data.observations[data.observations.len() - 1],
@@ -323,7 +318,7 @@ fn the_cycle_and_the_zero_can_be_chosen() {
         ("area", "10 mm^2", "width or thickness too"),
     ] {
         let output = with(&[(key, value)]).unwrap_err();
-        assert!(output.contains(message), "{output}");
+        assert_contains(&output, message);
     }
     let output = read(&text, &[("length", "20 mm")]).unwrap_err();
     assert!(
@@ -331,7 +326,7 @@ fn the_cycle_and_the_zero_can_be_chosen() {
         "{output}"
     );
     let output = read(&text, &SPECIMEN[..2]).unwrap_err();
-    assert!(output.contains("the thickness is not stated"), "{output}");
+    assert_contains(&output, "the thickness is not stated");
     let strains =
         "# test: uniaxial; zero: 1 mm\nstretch [-],nominal_stress [MPa]\n1.1,0.1\n1.2,0.2\n";
     assert!(
