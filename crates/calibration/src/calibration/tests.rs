@@ -18,14 +18,13 @@ mod uncertainty;
 mod verdict;
 mod weighting;
 
-use helpers::{assert_parameters, bounded, fit_with, fitted, law, parsed, uniaxial, weighted};
+use helpers::{
+    assert_parameters, bounded, fit_with, fitted, law, parsed, read, uniaxial, weighted,
+};
 
 fn data(names: &[&str]) -> Vec<TestData> {
-    let read = |name: &&str| {
-        let path = Path::new("../../materials/data").join(format!("{name}.csv"));
-        TestData::read(&path, &Statements::new()).unwrap()
-    };
-    names.iter().map(read).collect()
+    let file = |name: &&str| read(&format!("../../materials/data/{name}.csv"));
+    names.iter().map(file).collect()
 }
 
 fn values(fit: &Fit) -> Vec<f64> {

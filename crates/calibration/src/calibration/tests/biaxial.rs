@@ -1,7 +1,5 @@
 //! Laws of sheets with directions in planar biaxial tests.
 
-use std::path::Path;
-
 use super::*;
 use crate::statistics::normal_numbers;
 
@@ -67,8 +65,7 @@ fn stated(key: &str, value: f64) -> FitSettings {
 /// The optima of 400 starts in a real tissue, from those of one usual run.
 #[test]
 fn one_run_ends_at_the_optimum_of_many_starts() {
-    let path = Path::new("../../validation/measured/tissue_biaxial/protocols.csv");
-    let data = TestData::read(path, &Statements::new()).unwrap();
+    let data = read(helpers::TISSUE);
     for (law, sum) in [
         ("fung", 0.004_724_383),
         ("may-newman", 0.004_782_514),

@@ -1,5 +1,7 @@
 //! What tests of fits have in common.
 
+use std::path::Path;
+
 use rayon::prelude::*;
 
 use crate::calibration::{Answer, Fit, FitSettings, Quality, TestData, Weighting, fit};
@@ -8,6 +10,14 @@ use crate::error::Error;
 use crate::material::HyperelasticLaw;
 use crate::material::parameters::{StrainMeasure, StressMeasure};
 use crate::material::registry::Law;
+
+/// Protocols of a real tissue.
+pub const TISSUE: &str = "../../validation/measured/tissue_biaxial/protocols.csv";
+
+/// The test of a file.
+pub fn read(path: &str) -> TestData {
+    TestData::read(Path::new(path), &Statements::new()).unwrap()
+}
 
 /// The test of a table.
 pub fn parsed(text: &str) -> TestData {

@@ -1,25 +1,14 @@
 //! Fits whose minimum was missed, and laws that were chosen or judged by too few independent points.
 
-use std::path::Path;
-
-use super::helpers::{fit_with, uniaxial, weighted};
+use super::helpers::{TISSUE, fit_with, fitted, read, uniaxial, weighted};
 use crate::calibration::least_squares::{Residuals, lower};
 use crate::calibration::*;
-use crate::document::Statements;
 use crate::statistics::normal_numbers;
-
-fn fitted(law: &str, path: &str) -> Fit {
-    let data = TestData::read(Path::new(path), &Statements::new()).unwrap();
-    super::fitted(law, &[data])
-}
 
 /// The optimum of trust-region least squares from several random starts. A fit that once ended at 15.7 rad had a k₁ of 0.17314 MPa.
 #[test]
 fn fibres_in_tissue_are_found_within_one_period_and_at_the_optimum() {
-    let result = fitted(
-        "holzapfel-gasser-ogden",
-        "../../validation/measured/tissue_biaxial/protocols.csv",
-    );
+    let result = fitted("holzapfel-gasser-ogden", &[read(TISSUE)]);
     let optimum = [0.068298, 0.174202, 58.5944, 0.307137, 0.0];
     for (parameter, optimum) in result.parameters.iter().zip(optimum) {
         let off = (parameter.value - optimum).abs();
@@ -64,8 +53,7 @@ fn a_point_in_a_valley_is_no_minimum() {
 /// Terms of Ogden's law stand in the order of their exponents, also where weights are repeated.
 #[test]
 fn terms_of_a_sum_of_powers_are_in_order() {
-    let data = "../../materials/data/treloar_1944_uniaxial.csv";
-    let data = [TestData::read(Path::new(data), &Statements::new()).unwrap()];
+    let data = super::data(&["treloar_1944_uniaxial"]);
     for weighting in [Weighting::Absolute, Weighting::Relative] {
         let result = fit_with("ogden-2", &data, &weighted(weighting)).unwrap();
         assert!(result.parameters[1].value > result.parameters[3].value);
@@ -76,7 +64,7 @@ fn terms_of_a_sum_of_powers_are_in_order() {
 /// the same everywhere would hide that.
 #[test]
 fn a_smooth_trend_is_a_misfit_of_the_law_where_noise_is_smallest() {
-    let result = fitted("gent", "../../materials/data/treloar_1944_uniaxial.csv").quality;
+    let result = fitted("gent", &super::data(&["treloar_1944_uniaxial"])).quality;
     let verdict = result.verdict.unwrap();
     assert_eq!(verdict.answer, Answer::Systematic, "{verdict:?}");
     assert!(verdict.suits_other_weights && !result.has_intervals());
