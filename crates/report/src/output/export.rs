@@ -20,16 +20,15 @@ use crate::material::Code;
 
 mod abaqus;
 mod febio;
-mod input_file;
 mod model;
 mod sofa;
 mod text;
 mod xml;
 
-pub use input_file::InputFile;
 pub use model::Export;
 use model::Model;
 pub use sofa::Scene;
+pub use text::InputFile;
 
 impl Export<'_> {
     /// The problem as an input file of a code.

@@ -16,7 +16,6 @@ mod bar;
 mod canvas;
 mod charts;
 mod colours;
-mod design;
 mod encode;
 mod fields;
 mod layout;

@@ -11,18 +11,19 @@ use std::collections::BTreeSet;
 
 use super::model::{Constraint, Model, PartMaterial};
 use super::text::{FORCE, MID_PLANE, TURNED, ascii, number};
+use super::xml::Xml;
 use crate::material::CodeLaw;
 use crate::mesh::CellShape;
 
 mod columns;
 mod curves;
 
-use super::xml::Xml;
 use columns::Columns;
 use curves::Curves;
 
 /// Steps of time within a load factor to begin with.
 const TIME_STEPS: u32 = 10;
+
 /// The input file of a model.
 pub fn write(model: &Model) -> String {
     let columns = Columns::new(model);
@@ -245,15 +246,14 @@ fn boundary(model: &Model, columns: &Columns, curves: &mut Curves, file: &mut Xm
     file.close("Boundary");
 }
 
+/// Opens a condition on an axis of a node set.
+fn open_condition(set: &str, axis: &str, kind: &str, file: &mut Xml) {
+    let name = format!("{set}_{axis}");
+    file.open("bc", &[("name", &name), ("node_set", set), ("type", kind)]);
+}
+
 fn fixed(set: &str, axis: &str, file: &mut Xml) {
-    file.open(
-        "bc",
-        &[
-            ("name", &format!("{set}_{axis}")),
-            ("node_set", set),
-            ("type", "zero displacement"),
-        ],
-    );
+    open_condition(set, axis, "zero displacement", file);
     for each in ["x", "y", "z"] {
         let held = if each == axis { "1" } else { "0" };
         file.text(&format!("{each}_dof"), &[], held);
@@ -262,15 +262,7 @@ fn fixed(set: &str, axis: &str, file: &mut Xml) {
 }
 
 fn prescribed(set: &str, axis: &str, value: f64, curve: usize, file: &mut Xml) {
-    let kind = "prescribed displacement";
-    file.open(
-        "bc",
-        &[
-            ("name", &format!("{set}_{axis}")),
-            ("node_set", set),
-            ("type", kind),
-        ],
-    );
+    open_condition(set, axis, "prescribed displacement", file);
     file.text("dof", &[], axis);
     file.text("value", &[("lc", &curve.to_string())], &number(value));
     file.text("relative", &[], "0");

@@ -20,8 +20,7 @@
 //! # References
 //! F. Faure et al., SOFA: A Multi-Model Framework for Interactive Physical Simulation, Springer (2012), doi:10.1007/8415_2012_125
 
-use super::input_file::InputFile;
-use super::text::{ascii, words};
+use super::text::{InputFile, ascii, words};
 use super::xml::Xml;
 use crate::dynamics::lumped_mass;
 use crate::error::{Diagnostic, Error};

@@ -1,6 +1,16 @@
-//! Names, texts and numbers that every code reads.
+//! The file for another code, and the names, texts and numbers that every code reads.
 
 use std::collections::BTreeSet;
+
+/// An input file of another code.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct InputFile {
+    /// Its text.
+    pub text: String,
+    /// Where it differs from the study.
+    pub remarks: Vec<String>,
+}
 
 /// Names that the writers give themselves: codes unite sets of one name.
 pub const ALL_NODES: &str = "ALL_NODES";

@@ -3,9 +3,9 @@
 use png::{BlendOp, DisposeOp, Writer};
 use tiny_skia::Pixmap;
 
-use super::design::DrawResult;
 use super::encode::{Part, colours, encoder, full};
 use super::look::Look;
+use super::marks::DrawResult;
 use super::paint::Painter;
 use crate::results::{Animation, FieldFigure, Panel, Scale};
 

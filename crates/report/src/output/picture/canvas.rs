@@ -1,10 +1,9 @@
 //! A picture of marks above what is shaded, as a file of any format.
 
-use super::design::{DrawResult, Size};
 use super::encode::encode;
 use super::letters::Letters;
 use super::look::Look;
-use super::marks::{Align, Mark, Words};
+use super::marks::{Align, DrawResult, Mark, Size, Words};
 use super::paint::Painter;
 use super::vectors::Vectors;
 use crate::results::PictureFormat;

@@ -7,10 +7,9 @@ use plotters::style::{Color, ShapeStyle};
 
 use super::backend::{Coordinates, chart, opaque, point, units};
 use super::canvas::{EDGE, GAP, Sheet, Title, render};
-use super::design::{DrawResult, Size};
 use super::legend::Legend;
 use super::look::Look;
-use super::marks::{Align, Mark, Pen, Rectangle};
+use super::marks::{Align, DrawResult, Mark, Pen, Rectangle, Size};
 use super::numbers::Ticks;
 use super::thin;
 use crate::results::{Axis, Line, LineChart, PictureFormat, Stroke};
@@ -283,7 +282,7 @@ impl<'a> Frame<'a> {
             Some((x, y))
         };
         let points: Vec<_> = line.points.iter().filter_map(position).collect();
-        if line.is_marked() || line.stroke == Stroke::Points {
+        if line.is_dashed_between_points() || line.stroke == Stroke::Points {
             thin::scattered(points)
         } else {
             thin::connected(points)

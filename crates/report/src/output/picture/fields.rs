@@ -2,10 +2,9 @@
 
 use super::bar::Bar;
 use super::canvas::{EDGE, GAP, Sheet, render};
-use super::design::{DrawResult, Size};
 use super::layout::{LABEL_HEIGHT, Layout};
 use super::look::Look;
-use super::marks::{Align, Mark, Pen};
+use super::marks::{Align, DrawResult, Mark, Pen, Size};
 use super::paint::Painter;
 use crate::results::{FieldFigure, Panel, PictureFormat, Values};
 

@@ -118,7 +118,9 @@ impl<'a> Legend<'a> {
                 Sample::Line(line) => {
                     if line.stroke == Stroke::Filled {
                         sheet.put(Mark::rectangle(area, look.area(line.colour)));
-                    } else if let Some(pen) = line.pen(look).filter(|_| !line.is_marked()) {
+                    } else if let Some(pen) =
+                        line.pen(look).filter(|_| !line.is_dashed_between_points())
+                    {
                         sheet.put(Mark::line(&sample, pen));
                     }
                     if let Some((radius, pen, is_filled)) = line.marker(4.0, look) {

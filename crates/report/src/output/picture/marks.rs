@@ -4,6 +4,12 @@ use tiny_skia::{Path, PathBuilder};
 
 use super::letters::{Letters, curves};
 
+/// A result, or why a picture could not be drawn in the words of a library.
+pub(super) type DrawResult<T> = Result<T, Box<dyn std::error::Error>>;
+
+/// Width and height in points of the design.
+pub(super) type Size = (u32, u32);
+
 /// Red, green and blue.
 pub(super) type Colour = [u8; 3];
 

@@ -1,10 +1,9 @@
 //! Meshes by the outlines of their cells, and their named groups.
 
 use super::canvas::{EDGE, GAP, Sheet, render};
-use super::design::{DrawResult, Size};
 use super::layout::Layout;
 use super::look::Look;
-use super::marks::{Align, Colour, Mark, Pen, Rectangle};
+use super::marks::{Align, Colour, DrawResult, Mark, Pen, Rectangle, Size};
 use super::paint::Painter;
 use crate::results::{MeshFigure, NamedLines, PALETTE, PictureFormat};
 

@@ -2,8 +2,7 @@
 
 use tiny_skia::{FillRule, LineCap, LineJoin, Paint, Path, Pixmap, Stroke, StrokeDash, Transform};
 
-use super::design::DrawResult;
-use super::marks::{Colour, Mark, Pen};
+use super::marks::{Colour, DrawResult, Mark, Pen, Size};
 use crate::statistics::extremes;
 
 /// Paints into a picture at places in points.
@@ -22,7 +21,7 @@ impl Painter {
     ///
     /// # Errors
     /// Where it has no size, or one that no memory holds.
-    pub fn new(size: (u32, u32), paper: Colour, pixels_per_point: f32) -> DrawResult<Self> {
+    pub fn new(size: Size, paper: Colour, pixels_per_point: f32) -> DrawResult<Self> {
         let pixels = |points: u32| (points as f32 * pixels_per_point) as u32;
         let image = Pixmap::new(pixels(size.0), pixels(size.1));
         let mut image =

@@ -12,10 +12,9 @@ use pdf_writer::types::{
 use pdf_writer::{Content, Filter, Finish, Name, Pdf, Rect, Ref, Str};
 use tiny_skia::{Path, PathSegment};
 
-use super::design::DrawResult;
 use super::encode::{colours, full};
 use super::letters::{Face, Letters};
-use super::marks::{Colour, Mark, Pen, Words};
+use super::marks::{Colour, DrawResult, Mark, Pen, Words};
 use super::vectors::Vectors;
 
 /// The names of the regular and the bold font within a page.

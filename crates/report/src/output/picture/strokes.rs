@@ -6,11 +6,6 @@ use super::marks::Pen;
 use crate::results::{Line, Stroke};
 
 impl Line {
-    /// Whether computed points are marked.
-    pub(super) fn is_marked(&self) -> bool {
-        self.is_dashed_between_points()
-    }
-
     /// What its points are joined with; `None` where they are not.
     pub(super) fn pen(&self, look: Look) -> Option<Pen> {
         let pen = |width| Pen::new(look.line(self.colour), width);

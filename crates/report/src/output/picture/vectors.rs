@@ -7,10 +7,9 @@ use base64::engine::general_purpose::STANDARD;
 use quick_xml::escape::escape;
 use tiny_skia::{Path, PathSegment, Pixmap};
 
-use super::design::{DrawResult, Size};
 use super::encode::encode;
 use super::letters::{Face, Letters};
-use super::marks::{Align, Colour, Mark, Words};
+use super::marks::{Align, Colour, DrawResult, Mark, Size, Words};
 
 /// The parts of a picture, from below.
 pub(super) struct Vectors {

@@ -1,9 +1,8 @@
 //! No picture, however narrow and whatever its words, has words that are cut off or lie on one another.
 
 use super::super::charts::Plan;
-use super::super::design::{DrawResult, Size};
 use super::super::look::Look;
-use super::super::marks::{Mark, Words};
+use super::super::marks::{DrawResult, Mark, Size, Words};
 use crate::mesh::{CellShape, Mesh};
 use crate::results::{
     Axis, FieldFigure, Line, LineChart, MeshFigure, NamedLines, PALETTE, Panel, PictureFormat,
