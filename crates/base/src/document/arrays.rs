@@ -45,9 +45,7 @@ pub(super) fn of_npz(
         if part.is_some_and(|part| part != name) {
             arrays.push(Array {
                 name,
-                fields: Vec::new(),
-                shape: Vec::new(),
-                numbers: Vec::new(),
+                ..Array::default()
             });
             continue;
         }

@@ -63,7 +63,7 @@ impl<'a> Section<'a> {
 
     /// The table under `key`; where it is missing, the defaults alone are read.
     pub fn section(&self, key: &'static str) -> Section<'a> {
-        self.asks(key, Some(Takes::Section));
+        self.record_key(key, Some(Takes::Section));
         let (mut table, mut span) = (None, self.span.clone());
         if let Some(value) = self.written(key) {
             span = value.span();
@@ -104,7 +104,7 @@ impl<'a> Section<'a> {
 
     /// The tables of a list under `key`, written as `[[key]]`; a missing list is read from the defaults.
     pub fn tables(&self, key: &'static str) -> Vec<Section<'a>> {
-        self.asks(key, Some(Takes::Sections));
+        self.record_key(key, Some(Takes::Sections));
         let Some(value) = self.value(key) else {
             return Vec::new();
         };
@@ -132,8 +132,8 @@ impl<'a> Section<'a> {
 
     /// The table under `key`, or the tables of a list, written as `[[key]]`; where both are missing, the defaults alone are read.
     pub fn section_or_sections(&self, key: &'static str) -> Vec<Section<'a>> {
-        self.asks(key, Some(Takes::Section));
-        self.asks(key, Some(Takes::Sections));
+        self.record_key(key, Some(Takes::Section));
+        self.record_key(key, Some(Takes::Sections));
         if self.is_list(key) {
             self.tables(key)
         } else {
@@ -154,7 +154,7 @@ impl<'a> Section<'a> {
 
     /// Whether the file itself contains `key`.
     pub fn has(&self, key: &'static str) -> bool {
-        self.asks(key, None);
+        self.record_key(key, None);
         self.written(key).is_some()
     }
 
@@ -239,7 +239,7 @@ impl<'a> Section<'a> {
     }
 
     /// Records that a key is looked up, and its type if its value is read.
-    fn asks(&self, key: &'static str, takes: Option<Takes>) {
+    fn record_key(&self, key: &'static str, takes: Option<Takes>) {
         let example = self.defaults.and_then(|table| table.get(key));
         let required = self.required.contains(&key);
         let table = matches!(takes, Some(Takes::Section));
@@ -249,7 +249,7 @@ impl<'a> Section<'a> {
             (Some(_), None) if table => Presence::Optional,
             _ => Presence::Required,
         };
-        self.notes(
+        self.record_key_as(
             key,
             takes,
             example.map(|value| shown(value.get_ref())),
@@ -257,7 +257,7 @@ impl<'a> Section<'a> {
         );
     }
 
-    fn notes(
+    fn record_key_as(
         &self,
         key: &'static str,
         takes: Option<Takes>,

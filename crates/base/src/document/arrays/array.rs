@@ -1,7 +1,7 @@
 //! An array of numbers, and its text as a table.
 
 /// An array of numbers with its name.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Array {
     /// Its name; empty where the file has one array alone.
     pub name: String,

@@ -189,9 +189,9 @@ fn matrix(
         let numbers = by_rows(&numbers, &shape);
         all.push(Array {
             name,
-            fields: Vec::new(),
             shape,
             numbers,
+            ..Array::default()
         });
     }
     Ok(())

@@ -11,7 +11,7 @@ impl Section<'_> {
     /// One of several names; `None` when it is missing or unknown, which is recorded as a fault.
     pub fn choice<T: Copy>(&self, key: &'static str, choices: &[(&str, T)]) -> Option<T> {
         let names = choices.iter().map(|(known, _)| (*known).to_owned());
-        self.asks(key, Some(Takes::Choice(names.collect())));
+        self.record_key(key, Some(Takes::Choice(names.collect())));
         let value = self.value_like(key, &joined(choices, " | "))?;
         let name = self.converted(key, value, "text in quotes", text)?;
         let named = self.named(key, &name, choices);
@@ -22,7 +22,7 @@ impl Section<'_> {
     /// Some of several names, each once; `None` when one is unknown, which is recorded as a fault.
     pub fn choices<T: Copy>(&self, key: &'static str, choices: &[(&str, T)]) -> Option<Vec<T>> {
         let names = choices.iter().map(|(known, _)| (*known).to_owned());
-        self.asks(key, Some(Takes::Choices(names.collect())));
+        self.record_key(key, Some(Takes::Choices(names.collect())));
         let mut names = self.texts_like(key);
         let mut seen = Vec::new();
         names.retain(|name| {
@@ -38,7 +38,7 @@ impl Section<'_> {
 
     /// A truth value that is `usual` where the file does not say it, whatever the built-in study has as an example.
     pub fn flag_or(&self, usual: bool, key: &'static str) -> bool {
-        self.notes(
+        self.record_key_as(
             key,
             Some(Takes::Flag),
             Some(usual.to_string()),

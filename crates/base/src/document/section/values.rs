@@ -16,13 +16,13 @@ const MOST_BARE: f64 = 5.0;
 impl<'a> Section<'a> {
     /// A text.
     pub fn text(&self, key: &'static str) -> String {
-        self.asks(key, Some(Takes::Text));
+        self.record_key(key, Some(Takes::Text));
         self.read(key, "text in quotes", text).unwrap_or_default()
     }
 
     /// A list of texts.
     pub fn texts(&self, key: &'static str) -> Vec<String> {
-        self.asks(key, Some(Takes::Texts));
+        self.record_key(key, Some(Takes::Texts));
         self.texts_like(key)
     }
 
@@ -36,14 +36,14 @@ impl<'a> Section<'a> {
 
     /// A truth value.
     pub fn flag(&self, key: &'static str) -> bool {
-        self.asks(key, Some(Takes::Flag));
+        self.record_key(key, Some(Takes::Flag));
         self.read(key, "true or false", DeValue::as_bool)
             .unwrap_or_default()
     }
 
     /// A whole number from `low` to `high`.
     pub fn count(&self, key: &'static str, low: usize, high: usize) -> usize {
-        self.asks(key, Some(Takes::Count([low, high])));
+        self.record_key(key, Some(Takes::Count([low, high])));
         let wanted = format!("a whole number from {low} to {high}");
         self.read(key, &wanted, |value| {
             whole_number(value).filter(|n| (low..=high).contains(n))
@@ -54,7 +54,7 @@ impl<'a> Section<'a> {
     /// A list of exactly two whole numbers from `low` to `high`; `None` when it is wrong, which is recorded
     /// as a fault.
     pub fn count_pair(&self, key: &'static str, low: usize, high: usize) -> Option<[usize; 2]> {
-        self.asks(key, Some(Takes::Counts([low, high], None)));
+        self.record_key(key, Some(Takes::Counts([low, high], None)));
         let wanted = format!("two whole numbers from {low} to {high}, such as [60, 20]");
         self.read(key, &wanted, |value| count_pair(value, low, high))
     }
@@ -66,7 +66,7 @@ impl<'a> Section<'a> {
         key: &'static str,
         [low, high]: [usize; 2],
     ) -> Option<Option<[usize; 2]>> {
-        self.asks(key, Some(Takes::Counts([low, high], Some(word.to_owned()))));
+        self.record_key(key, Some(Takes::Counts([low, high], Some(word.to_owned()))));
         let wanted =
             format!("two whole numbers from {low} to {high}, such as [60, 20], or \"{word}\"");
         self.read(key, &wanted, |value| match value {
@@ -77,7 +77,7 @@ impl<'a> Section<'a> {
 
     /// A number without a dimension.
     pub fn number(&self, key: &'static str, bound: Bound) -> f64 {
-        self.asks(key, Some(Takes::Number(bound)));
+        self.record_key(key, Some(Takes::Number(bound)));
         let Some(value) = self.value(key) else {
             return f64::NAN;
         };
@@ -96,9 +96,9 @@ impl<'a> Section<'a> {
 
     /// A quantity with a unit, in the internal unit of `dimension`.
     pub fn quantity(&self, key: &'static str, dimension: Dimension, bound: Bound) -> f64 {
-        self.asks(key, Some(Takes::Quantity(dimension, bound)));
+        self.record_key(key, Some(Takes::Quantity(dimension, bound)));
         match self.value_like(key, &dimension.blank()) {
-            Some(value) => self.quantity_of(key, value, dimension, bound),
+            Some(value) => self.item(key, value, dimension, bound, MOST_BARE),
             None => f64::NAN,
         }
     }
@@ -111,21 +111,21 @@ impl<'a> Section<'a> {
         dimension: Dimension,
         bound: Bound,
     ) -> Option<f64> {
-        let leaves = self.says(word, key);
-        self.asks(key, Some(Takes::Quantity(dimension, bound)));
-        (!leaves).then(|| self.quantity(key, dimension, bound))
+        let is_word = self.is_word(word, key);
+        self.record_key(key, Some(Takes::Quantity(dimension, bound)));
+        (!is_word).then(|| self.quantity(key, dimension, bound))
     }
 
     /// A number without a dimension, or a word that leaves it to the program: `None`.
     pub fn number_or(&self, word: &str, key: &'static str, bound: Bound) -> Option<f64> {
-        let leaves = self.says(word, key);
-        self.asks(key, Some(Takes::Number(bound)));
-        (!leaves).then(|| self.number(key, bound))
+        let is_word = self.is_word(word, key);
+        self.record_key(key, Some(Takes::Number(bound)));
+        (!is_word).then(|| self.number(key, bound))
     }
 
-    /// Whether a key that takes a word has it.
-    fn says(&self, word: &str, key: &'static str) -> bool {
-        self.asks(key, Some(Takes::Choice(vec![word.to_owned()])));
+    /// Whether the value of a key is a word that it may take.
+    fn is_word(&self, word: &str, key: &'static str) -> bool {
+        self.record_key(key, Some(Takes::Choice(vec![word.to_owned()])));
         let is_word = |value: Value<'a>| text(value.get_ref()).is_some_and(|text| text == word);
         self.value(key).is_some_and(is_word)
     }
@@ -139,11 +139,11 @@ impl<'a> Section<'a> {
         bound: Bound,
     ) -> (Option<&'b str>, Vec<f64>) {
         let names = words.iter().map(|word| (*word).to_owned());
-        self.asks(key, Some(Takes::Choice(names.collect())));
+        self.record_key(key, Some(Takes::Choice(names.collect())));
         let is_text = |value: &Value<'a>| matches!(value.get_ref(), DeValue::String(_));
         match self.value(key).filter(is_text) {
             Some(_) => {
-                self.asks(key, Some(Takes::Quantities(dimension, bound)));
+                self.record_key(key, Some(Takes::Quantities(dimension, bound)));
                 let choices: Vec<_> = words.iter().map(|word| (*word, *word)).collect();
                 (self.choice(key, &choices), Vec::new())
             }
@@ -153,7 +153,7 @@ impl<'a> Section<'a> {
 
     /// The size of a unit by its name alone, such as `"mm"`, or as a quantity, such as `"0.05 mm"`.
     pub fn unit(&self, key: &'static str, dimension: Dimension) -> f64 {
-        self.asks(key, Some(Takes::Unit(dimension)));
+        self.record_key(key, Some(Takes::Unit(dimension)));
         let unit = dimension.units().next().unwrap_or_default();
         let Some(value) = self.value_like(key, &format!("\"{unit}\"")) else {
             return f64::NAN;
@@ -174,7 +174,7 @@ impl<'a> Section<'a> {
         match units::factor(name, dimension) {
             Ok(factor) => factor,
             Err(_) if begins_with_number => {
-                self.quantity_of(key, value, dimension, Bound::Positive)
+                self.item(key, value, dimension, Bound::Positive, MOST_BARE)
             }
             Err(fault) => {
                 let hint = fault.remedy(name, dimension);
@@ -186,7 +186,7 @@ impl<'a> Section<'a> {
 
     /// A length that may be linear in the place at rest, as text such as `"2 mm + 0.1 * X"`.
     pub fn linear_length(&self, key: &'static str) -> Linear {
-        self.asks(key, Some(Takes::LinearLength));
+        self.record_key(key, Some(Takes::LinearLength));
         const EXAMPLE: &str = "\"2 mm\" or \"0.1 * X\"";
         let nothing = Linear::constant(f64::NAN);
         let Some(value) = self.value_like(key, EXAMPLE) else {
@@ -250,7 +250,7 @@ impl<'a> Section<'a> {
         bound: Bound,
         most: f64,
     ) -> Vec<f64> {
-        self.asks(key, Some(Takes::Quantities(dimension, bound)));
+        self.record_key(key, Some(Takes::Quantities(dimension, bound)));
         let example = format!("[{example}, …]");
         let Some(value) = self.value_like(key, &example) else {
             return Vec::new();
@@ -273,16 +273,6 @@ impl<'a> Section<'a> {
         items
             .map(|item| self.item(key, item, dimension, bound, most))
             .collect()
-    }
-
-    fn quantity_of(
-        &self,
-        key: &'static str,
-        value: Value<'a>,
-        dimension: Dimension,
-        bound: Bound,
-    ) -> f64 {
-        self.item(key, value, dimension, bound, MOST_BARE)
     }
 
     /// A quantity; a ratio above `most` must say whether it is in percent.
@@ -318,12 +308,7 @@ impl<'a> Section<'a> {
     fn bounded(&self, key: &'static str, value: Value<'a>, number: f64, bound: Bound) -> f64 {
         let number = bound.on_the_end(number);
         if let Some(wanted) = bound.violation(number) {
-            self.fault_at(
-                key,
-                value,
-                &format!("must be {wanted}"),
-                &format!("it is {}", self.written_text(value)),
-            );
+            self.must_be(key, value, &wanted);
             return f64::NAN;
         }
         number
@@ -362,21 +347,15 @@ impl<'a> Section<'a> {
     ) -> Option<T> {
         let converted = convert(value.get_ref());
         if converted.is_none() {
-            self.fault_at(
-                key,
-                value,
-                &format!("must be {wanted}"),
-                &format!("it is {}", self.written_text(value)),
-            );
+            self.must_be(key, value, wanted);
         }
         converted
     }
 
-    fn written_text(&self, value: Value<'a>) -> String {
-        self.source
-            .text
-            .get(value.span())
-            .unwrap_or_default()
-            .to_owned()
+    /// Records that a value is not what is wanted, and how it is written.
+    fn must_be(&self, key: &'static str, value: Value<'a>, wanted: &str) {
+        let written = self.source.text.get(value.span()).unwrap_or_default();
+        let hint = format!("it is {written}");
+        self.fault_at(key, value, &format!("must be {wanted}"), &hint);
     }
 }
