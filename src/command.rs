@@ -17,7 +17,7 @@ use std::process::ExitCode;
 use clap::{CommandFactory, Parser, Subcommand};
 
 use crate::kinds;
-use conclusion::{conclude, printed};
+use conclusion::finish;
 use gelbench_base::budget::Budget;
 use gelbench_base::document::inputs;
 use gelbench_base::error::Error;
@@ -27,9 +27,9 @@ use gelbench_studies::studies::{self, name};
 use gelbench_validation::validation;
 use journal::FolderJournal;
 use large::Large;
-use progress::{Progress, Shown, tell_files};
+use progress::{Progress, Shown};
 use reference::FileKind;
-use terminal::{Outcome, Printed, complain, print, print_report, warn};
+use terminal::{Outcome, Printed, complain, print, warn};
 
 mod choice;
 mod compare;
@@ -42,7 +42,6 @@ mod fit;
 mod fit_message;
 mod group;
 mod identify;
-mod identity;
 mod images;
 mod interrupt;
 mod journal;
@@ -276,6 +275,11 @@ fn perform(command: Command) -> u8 {
         Command::Workbench { files } => workbench::open(&files),
         Command::Materials { command } => materials::run(command),
     };
+    exit_code(outcome)
+}
+
+/// The exit code of a command, whose fault is printed.
+fn exit_code(outcome: Outcome) -> u8 {
     outcome.unwrap_or_else(|error| {
         complain(&error);
         error.exit_code()
@@ -284,13 +288,8 @@ fn perform(command: Command) -> u8 {
 
 /// Performs a command on each of some studies, whatever the others are; the exit code is the largest of theirs.
 fn each(studies: &[PathBuf], perform: impl Fn(&Path) -> Outcome) -> Outcome {
-    let code = |study: &PathBuf| {
-        perform(study).unwrap_or_else(|error| {
-            complain(&error);
-            error.exit_code()
-        })
-    };
-    Ok(studies.iter().map(code).max().unwrap_or_default())
+    let codes = studies.iter().map(|study| exit_code(perform(study)));
+    Ok(codes.max().unwrap_or_default())
 }
 
 /// Computes studies one after the other; several need folders of their own.
@@ -321,7 +320,7 @@ fn run_study(path: &Path, folder: Option<PathBuf>, budget: Budget) -> Outcome {
     let usual = || Path::new("output").join(name(path));
     let folder = folder.or_else(|| ready.output.folder.clone());
     let folder = folder.unwrap_or_else(usual);
-    let identity = identity::of(&format!("{path:?} {budget:?}"));
+    let identity = interrupt::identity(&format!("{path:?} {budget:?}"));
     let results_folder = ResultFolder::resume(&folder, "run", &[path], &identity)?;
     interrupt::guard(&results_folder);
     ready.warnings.extend(results_folder.replaces());
@@ -343,12 +342,8 @@ fn run_study(path: &Path, folder: Option<PathBuf>, budget: Budget) -> Outcome {
     let warnings = output::write(&results, with_report, &mut results_folder)?;
     drop(progress);
     warn(&warnings);
-    warn(&fault.into_iter().collect::<Vec<_>>());
-    let files = results_folder.finish()?;
-    tell_files(&files);
-    print_report(|| results.json())?;
-    let text = printed(&results, files.len(), &folder);
-    conclude(&[results], &text)
+    warn(fault.as_slice());
+    finish(results_folder, results)
 }
 
 fn check(path: &Path, budget: Budget) -> Outcome {

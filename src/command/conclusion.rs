@@ -2,8 +2,11 @@
 
 use std::path::Path;
 
+use super::progress::tell_files;
 use super::terminal;
-use super::terminal::{complain_of_end, print, warn_words};
+use super::terminal::{complain_of_end, print, print_report, warn_words};
+use gelbench_base::error::Error;
+use gelbench_report::output::ResultFolder;
 use gelbench_report::results::{Check, End, Outcome, Results};
 
 /// The exit code of a study of which a model has no solution.
@@ -26,8 +29,23 @@ pub fn conclude(results: &[Results], words: &str) -> terminal::Outcome {
     Ok(u8::from(!results.iter().all(Results::passed)))
 }
 
+/// Moves all files into their folder, prints the report and the results in words, and decides on the exit code.
+pub fn finish(folder: ResultFolder, results: Results) -> terminal::Outcome {
+    let words = moved_into_place(folder, &results)?;
+    print_report(|| results.json())?;
+    conclude(&[results], &words)
+}
+
+/// Moves all files into their folder; the results in words.
+pub fn moved_into_place(folder: ResultFolder, results: &Results) -> Result<String, Error> {
+    let path = folder.path().to_owned();
+    let files = folder.finish()?;
+    tell_files(&files);
+    Ok(printed(results, files.len(), &path))
+}
+
 /// The results for a terminal: the headline, where the page is, how far all agree, and where the files are.
-pub fn printed(results: &Results, files: usize, folder: &Path) -> String {
+fn printed(results: &Results, files: usize, folder: &Path) -> String {
     let parts = [
         results.headline(),
         open_page(folder),

@@ -11,7 +11,7 @@ use super::parameter_bounds::{ParameterBounds, bounds};
 use super::pictures::StyleOptions;
 use super::progress::{Progress, tell_files};
 use super::terminal::{Outcome, Printed, print, print_report, together, warn};
-use super::test_reading::ReadingArguments;
+use super::test_reading::{ReadingArguments, read_tests};
 use super::{fit_message, interrupt};
 use gelbench_base::document::Statements;
 use gelbench_base::error::{Diagnostic, Error};
@@ -91,9 +91,7 @@ pub fn fit(arguments: FitArguments) -> Outcome {
     if memory != Memory::Softening {
         check_history(&reading)?;
     }
-    let files = arguments.data.iter();
-    let tests = together(files.map(|path| TestData::read(path, &reading)))?;
-    tests.iter().for_each(|test| warn(&test.warnings));
+    let tests = read_tests(&arguments.data, &reading)?;
     let settings = FitSettings {
         weighting: arguments.weighting,
         bounds: arguments.parameters.bounds()?,
@@ -213,7 +211,7 @@ fn chosen_fit(
 }
 
 /// Whether a card comes along with the program.
-fn shipped(name: &str) -> bool {
+pub fn shipped(name: &str) -> bool {
     CARDS.iter().any(|(known, _)| *known == name)
 }
 

@@ -10,13 +10,12 @@ use super::interrupt;
 use super::parameter_bounds::ParameterBounds;
 use super::pictures::StyleOptions;
 use super::progress::tell_files;
-use super::terminal::{Outcome, Printed, print, print_report, together, warn};
-use super::test_reading::ReadingArguments;
+use super::terminal::{Outcome, Printed, print, print_report, warn};
+use super::test_reading::{ReadingArguments, read_tests};
 use gelbench_base::error::Error;
 use gelbench_base::statistics::Estimate;
 use gelbench_calibration::calibration::{
-    Conversion, FitSettings, Group, GroupState, Provenance, StrainColumn, TestData, Weighting,
-    card_text,
+    Conversion, FitSettings, Group, GroupState, Provenance, StrainColumn, Weighting, card_text,
 };
 use gelbench_mechanics::material::registry::Law;
 use gelbench_report::output::{ResultFolder, write_picture};
@@ -68,11 +67,8 @@ pub fn group(arguments: GroupArguments) -> Outcome {
         ..FitSettings::default()
     };
     let reading = arguments.reading.reading()?;
-    let fitted = |files: &[PathBuf]| {
-        let tests = together(files.iter().map(|path| TestData::read(path, &reading)))?;
-        tests.iter().for_each(|test| warn(&test.warnings));
-        Group::new(arguments.law, &tests, &settings)
-    };
+    let fitted =
+        |files: &[PathBuf]| Group::new(arguments.law, &read_tests(files, &reading)?, &settings);
     let mut groups = vec![fitted(&arguments.data)?];
     if !arguments.against.is_empty() {
         groups.push(fitted(&arguments.against)?);

@@ -6,12 +6,12 @@ use std::time::Instant;
 use clap::Args;
 
 use super::choice::one_of;
-use super::conclusion::{conclude, printed};
+use super::conclusion::finish;
 use super::correct::values::unit;
 use super::interrupt;
 use super::large::Large;
-use super::progress::{Progress, tell_files};
-use super::terminal::{Outcome, Printed, print_report, warn};
+use super::progress::Progress;
+use super::terminal::{Outcome, Printed, warn};
 use gelbench_images::images::{ImageFile, Order, Settings, list};
 use gelbench_report::output::{self, ResultFolder};
 use gelbench_studies::studies::images::{ImageRequest, ImageSettings, results};
@@ -128,9 +128,5 @@ pub fn track(options: TrackOptions) -> Outcome {
     let warnings = output::write(&results, true, &mut folder)?;
     drop(progress);
     warn(&warnings);
-    let files = folder.finish()?;
-    tell_files(&files);
-    print_report(|| results.json())?;
-    let text = printed(&results, files.len(), &options.output);
-    conclude(&[results], &text)
+    finish(folder, results)
 }

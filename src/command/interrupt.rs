@@ -1,9 +1,10 @@
-//! What happens when the user breaks a command off.
+//! What happens when the user breaks a command off, and how the same command is recognised when it is started again.
 
 use std::io::Write;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use gelbench_report::output::{Left, ResultFolder, Unfinished};
+use gelbench_base::document::inputs;
+use gelbench_report::output::{self, Left, ResultFolder, Unfinished};
 
 /// The exit code of a command that was interrupted: 128 and the number of the signal.
 const EXIT_CODE: i32 = 130;
@@ -35,4 +36,10 @@ pub fn attend() {
 pub fn guard(folder: &ResultFolder) {
     let mut unfinished = UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner);
     *unfinished = Some(folder.unfinished());
+}
+
+/// The identity of a command: its statement, the contents of all files that it has read, and the program itself.
+pub fn identity(statement: &str) -> String {
+    let program = std::env::current_exe().ok();
+    output::identity(statement, &inputs::read(), program.as_deref())
 }

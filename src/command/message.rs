@@ -63,9 +63,10 @@ pub fn diagnostic(finding: &Diagnostic, coloured: bool, columns: Option<usize>) 
 /// One line of the list of cards.
 pub fn card_line(card: &Card) -> String {
     let [low, high] = card.stretch_range;
-    let range = match card.range_is_stated {
-        true => format!("λ {low} … {high}"),
-        false => String::new(),
+    let range = if card.range_is_stated {
+        format!("λ {low} … {high}")
+    } else {
+        String::new()
     };
     format!(
         "{:<18} {:<20} {range:<20} {}\n",

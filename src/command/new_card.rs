@@ -5,13 +5,13 @@ use std::path::{Path, PathBuf};
 use clap::{ArgAction, Args};
 
 use super::choice::one_of;
-use super::fit::a_law;
+use super::fit::{a_law, shipped};
 use super::parameter_bounds::pair;
 use super::terminal::{Outcome, print, save};
 use gelbench_base::document::{file, read_text};
 use gelbench_base::error::{Diagnostic, Error};
 use gelbench_base::units::{self, Dimension, brief};
-use gelbench_mechanics::material::registry::{CARDS, Law};
+use gelbench_mechanics::material::registry::Law;
 use gelbench_mechanics::material::{Card, Code, Known, Moduli, VolumeEnergy};
 
 pub const NEW_HELP: &str = "\
@@ -245,12 +245,12 @@ pub fn check_cards(options: &CheckCards) -> Outcome {
 
 /// Reads a card, and returns a line about it.
 fn check_card(name: &str, is_shared: bool) -> Result<String, Error> {
-    let is_shipped = CARDS.iter().any(|(known, _)| *known == name);
-    if is_shipped || !is_shared {
+    if shipped(name) || !is_shared {
         let card = Card::load(name, Path::new("."))?;
-        let remark = match card.range_is_stated && card.citation != "not stated" {
-            true => "",
-            false => "; to share it, state range and source: gelbench materials check --share",
+        let remark = if card.range_is_stated && card.citation != "not stated" {
+            ""
+        } else {
+            "; to share it, state range and source: gelbench materials check --share"
         };
         return Ok(format!("{name}: no faults{remark}\n"));
     }

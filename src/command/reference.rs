@@ -208,8 +208,7 @@ fn line(entry: &FoundKey, remarks: &BTreeMap<String, String>) -> String {
     };
     let only = only_with.as_ref().map(|(choice, names)| {
         let choice = choice.rsplit('.').next().unwrap_or_default();
-        let names: Vec<_> = names.iter().map(|name| format!("`\"{name}\"`")).collect();
-        format!("with `{choice}` {}", names.join(", "))
+        format!("with `{choice}` {}", quoted(names))
     });
     let remark = remarks.get(&key.path).cloned();
     let about: Vec<String> = only.into_iter().chain(remark).collect();
@@ -218,6 +217,12 @@ fn line(entry: &FoundKey, remarks: &BTreeMap<String, String>) -> String {
         "| `{name}` | {} | {default} | {about} |\n",
         takes.join(", or ")
     )
+}
+
+/// Names in quotes, with commas between them.
+fn quoted(names: &[String]) -> String {
+    let names: Vec<_> = names.iter().map(|name| format!("`\"{name}\"`")).collect();
+    names.join(", ")
 }
 
 /// What a key takes, in words.
@@ -233,14 +238,8 @@ fn takes(takes: &Takes) -> String {
         Takes::Text => "text".to_owned(),
         Takes::Texts => "list of texts".to_owned(),
         Takes::Flag => "`true` or `false`".to_owned(),
-        Takes::Choice(names) => {
-            let names: Vec<_> = names.iter().map(|name| format!("`\"{name}\"`")).collect();
-            names.join(", ")
-        }
-        Takes::Choices(names) => {
-            let names: Vec<_> = names.iter().map(|name| format!("`\"{name}\"`")).collect();
-            format!("list of {}", names.join(", "))
-        }
+        Takes::Choice(names) => quoted(names),
+        Takes::Choices(names) => format!("list of {}", quoted(names)),
         Takes::Count(limits) => format!("whole number {}", integer(limits)),
         Takes::Counts(limits, word) => {
             let word = word.as_ref().map(|word| format!(", or `\"{word}\"`"));

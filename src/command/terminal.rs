@@ -186,11 +186,7 @@ pub fn together<T>(results: impl Iterator<Item = Result<T, Error>>) -> Result<Ve
             Err(other) => return Err(other),
         }
     }
-    if faults.is_empty() {
-        Ok(good)
-    } else {
-        Err(Error::Input(faults))
-    }
+    Error::refuse(faults).map(|()| good)
 }
 
 #[cfg(test)]

@@ -1,14 +1,14 @@
 //! What the command line says of test data.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::terminal::warn;
+use super::terminal::{together, warn};
 use gelbench_base::document::file::MOST_OF_A_STUDY;
 use gelbench_base::document::{Statements, read_text};
 use gelbench_base::error::{Diagnostic, Error};
-use gelbench_calibration::calibration;
+use gelbench_calibration::calibration::{self, TestData};
 
 const MOUNTING: &str = "Planar biaxial tests";
 
@@ -176,6 +176,13 @@ impl ReadingArguments {
             .filter_map(|(key, value)| Some((key.to_owned(), value?)))
             .collect()
     }
+}
+
+/// Reads the tests of some files, and prints their warnings.
+pub fn read_tests(files: &[PathBuf], reading: &Statements) -> Result<Vec<TestData>, Error> {
+    let tests = together(files.iter().map(|path| TestData::read(path, reading)))?;
+    tests.iter().for_each(|test| warn(&test.warnings));
+    Ok(tests)
 }
 
 /// Statements with those of a preset, which is a file of the lines that the head of a table may have; it is written from the statements where

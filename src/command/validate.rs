@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use serde_json::{Value, json};
 
 use super::conclusion::conclude;
+use super::interrupt;
 use super::progress::{Progress, tell_files};
 use super::terminal::{Outcome, print_report, warn};
-use super::{identity, interrupt};
 use crate::kinds;
 use gelbench_base::error::{Diagnostic, Error};
 use gelbench_report::output::{self, ResultFolder};
@@ -27,7 +27,8 @@ pub fn run(names: &[String], quick: bool, folder: Option<PathBuf>) -> Outcome {
     let usual = || Path::new("output/validation").join(part);
     let folder = &folder.unwrap_or_else(usual);
     let statement = format!("validate {names:?} {quick}");
-    let mut results = ResultFolder::resume(folder, "validate", &[], &identity::of(&statement))?;
+    let identity = interrupt::identity(&statement);
+    let mut results = ResultFolder::resume(folder, "validate", &[], &identity)?;
     interrupt::guard(&results);
     warn(validation_time(&chosen).as_slice());
     let progress = Progress::of(chosen.len() as u64);

@@ -4,10 +4,9 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use super::job::Job;
-use crate::command::conclusion::printed;
-use crate::command::identity;
+use crate::command::conclusion::moved_into_place;
 use crate::command::interrupt;
-use crate::command::progress::{Progress, tell_files};
+use crate::command::progress::Progress;
 use crate::command::terminal::{print, warn};
 use gelbench_base::error::Error;
 use gelbench_estimation::estimation::FieldEstimate;
@@ -20,7 +19,7 @@ use gelbench_studies::studies::markers::{ComparedFrames, MarkerStudy};
 /// Corrects all frames of a field, writes into the job's folder, and prints.
 pub fn correct(field: &mut MarkerStudy, job: Job) -> Result<(Vec<FieldEstimate>, Results), Error> {
     let inputs: Vec<&Path> = job.inputs.iter().map(PathBuf::as_path).collect();
-    let identity = identity::of(&job.arguments);
+    let identity = interrupt::identity(&job.arguments);
     let mut folder = ResultFolder::resume(&job.folder, "correct", &inputs, &identity)?;
     interrupt::guard(&folder);
     warn(folder.replaces().as_slice());
@@ -51,10 +50,7 @@ pub fn correct(field: &mut MarkerStudy, job: Job) -> Result<(Vec<FieldEstimate>,
 /// Writes results, moves all files into their folder, and prints the summary.
 pub fn finish(mut folder: ResultFolder, results: &Results) -> Result<(), Error> {
     warn(&output::write(results, true, &mut folder)?);
-    let path = folder.path().to_owned();
-    let files = folder.finish()?;
-    tell_files(&files);
-    print(&printed(results, files.len(), &path))
+    print(&moved_into_place(folder, results)?)
 }
 
 /// The estimates of frames, and the numbers of those that could not be corrected with the reasons.
