@@ -70,12 +70,12 @@ pub mod specimens {}
 #[doc = "```"]
 pub mod motions {}
 #[doc = include_str!("guide/measured_fields.md")]
-#[doc = include_str!("guide/images.md")]
-pub mod images {}
 #[doc = "```toml"]
 #[doc = include_str!("../examples/measured_plate.toml")]
 #[doc = "```"]
 pub mod measured_fields {}
+#[doc = include_str!("guide/images.md")]
+pub mod images {}
 #[doc = include_str!("guide/materials.md")]
 pub mod materials {}
 #[doc = include_str!("guide/springs_and_dashpots.md")]
