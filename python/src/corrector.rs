@@ -50,74 +50,7 @@ fn sparse_rows(name: &str, columns: usize, matrix: &Csr<'_>) -> PyResult<SparseR
     Ok(rows)
 }
 
-/// Conditions that a callable linearises: of a field, values and the Jacobian by rows.
-struct PythonCondition<'a> {
-    name: String,
-    rows: usize,
-    linearise: Py<PyAny>,
-    curvature: Option<Py<PyAny>>,
-    unknowns: Option<Vec<usize>>,
-    watch: &'a Watch,
-}
-
-impl PythonCondition<'_> {
-    fn call(&self, u: &[f64]) -> Linearisation {
-        self.watch.check();
-        let linearisation = Python::attach(|py| {
-            let pair = self.linearise.call1(py, (PyArray1::from_slice(py, u),))?;
-            let (values, jacobian): (PyReadonlyArray1<'_, f64>, Csr<'_>) = pair.extract(py)?;
-            Ok(Linearisation {
-                values: values.as_slice()?.to_vec(),
-                jacobian: sparse_rows(&self.name, u.len(), &jacobian)?,
-            })
-        });
-        linearisation.unwrap_or_else(|error| self.watch.fail(error))
-    }
-}
-
-impl Condition for PythonCondition<'_> {
-    fn name(&self) -> &str {
-        &self.name
-    }
-
-    fn rows(&self) -> usize {
-        self.rows
-    }
-
-    fn linearise(&self, u: &[f64]) -> Result<Linearisation, Inadmissible> {
-        let linearisation = self.call(u);
-        // A trial field at which the conditions have no value is too long a step.
-        match linearisation.values.iter().all(|value| value.is_finite()) {
-            true => Ok(linearisation),
-            false => Err(Inadmissible { element: 0 }),
-        }
-    }
-
-    fn curvature(
-        &self,
-        u: &[f64],
-        multipliers: &[f64],
-    ) -> Result<Option<SparseRows>, Inadmissible> {
-        let Some(curvature) = &self.curvature else {
-            return Ok(None);
-        };
-        self.watch.check();
-        let matrix = Python::attach(|py| {
-            let field = PyArray1::from_slice(py, u);
-            let multipliers = PyArray1::from_slice(py, multipliers);
-            let matrix = curvature.call1(py, (field, multipliers))?;
-            let matrix: Csr<'_> = matrix.extract(py)?;
-            sparse_rows(&self.name, u.len(), &matrix)
-        });
-        Ok(Some(matrix.unwrap_or_else(|error| self.watch.fail(error))))
-    }
-
-    fn unknowns(&self) -> Option<&[usize]> {
-        self.unknowns.as_deref()
-    }
-}
-
-/// What Python says of a group of conditions.
+/// What Python says of a group of conditions; a callable linearises them: of a field, values and the Jacobian by rows.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub struct Given {
@@ -126,6 +59,73 @@ pub struct Given {
     linearise: Py<PyAny>,
     curvature: Option<Py<PyAny>>,
     unknowns: Option<Vec<usize>>,
+}
+
+/// Conditions of Python in a computation that can be ended.
+struct PythonCondition<'a> {
+    given: Given,
+    watch: &'a Watch,
+}
+
+impl PythonCondition<'_> {
+    fn call(&self, u: &[f64]) -> Linearisation {
+        self.watch.check();
+        let linearisation = Python::attach(|py| {
+            let pair = self
+                .given
+                .linearise
+                .call1(py, (PyArray1::from_slice(py, u),))?;
+            let (values, jacobian): (PyReadonlyArray1<'_, f64>, Csr<'_>) = pair.extract(py)?;
+            Ok(Linearisation {
+                values: values.as_slice()?.to_vec(),
+                jacobian: sparse_rows(&self.given.name, u.len(), &jacobian)?,
+            })
+        });
+        linearisation.unwrap_or_else(|error| self.watch.fail(error))
+    }
+}
+
+impl Condition for PythonCondition<'_> {
+    fn name(&self) -> &str {
+        &self.given.name
+    }
+
+    fn rows(&self) -> usize {
+        self.given.rows
+    }
+
+    fn linearise(&self, u: &[f64]) -> Result<Linearisation, Inadmissible> {
+        let linearisation = self.call(u);
+        // A trial field at which the conditions have no value is too long a step.
+        if linearisation.values.iter().all(|value| value.is_finite()) {
+            Ok(linearisation)
+        } else {
+            Err(Inadmissible { element: 0 })
+        }
+    }
+
+    fn curvature(
+        &self,
+        u: &[f64],
+        multipliers: &[f64],
+    ) -> Result<Option<SparseRows>, Inadmissible> {
+        let Some(curvature) = &self.given.curvature else {
+            return Ok(None);
+        };
+        self.watch.check();
+        let matrix = Python::attach(|py| {
+            let field = PyArray1::from_slice(py, u);
+            let multipliers = PyArray1::from_slice(py, multipliers);
+            let matrix = curvature.call1(py, (field, multipliers))?;
+            let matrix: Csr<'_> = matrix.extract(py)?;
+            sparse_rows(&self.given.name, u.len(), &matrix)
+        });
+        Ok(Some(matrix.unwrap_or_else(|error| self.watch.fail(error))))
+    }
+
+    fn unknowns(&self) -> Option<&[usize]> {
+        self.given.unknowns.as_deref()
+    }
 }
 
 /// When a correction ends.
@@ -187,16 +187,9 @@ pub fn corrected<'py>(
     let start = start.as_slice()?.to_vec();
     let weights = weights.as_slice()?.to_vec();
     let (field, residuals, lengths, multipliers, estimates) = run(py, progress, |watch| {
-        let conditions = conditions.into_iter().map(|given| {
-            Box::new(PythonCondition {
-                name: given.name,
-                rows: given.rows,
-                linearise: given.linearise,
-                curvature: given.curvature,
-                unknowns: given.unknowns,
-                watch,
-            }) as Box<dyn Condition + '_>
-        });
+        let conditions = conditions
+            .into_iter()
+            .map(|given| Box::new(PythonCondition { given, watch }) as Box<dyn Condition + '_>);
         let corrector = Corrector::new(conditions.collect(), weights, settings.read()?);
         let failed = |fault| Error::Solve {
             model: "corrector".into(),

@@ -121,6 +121,6 @@ pub fn track(
         let seconds = start.elapsed().as_secs_f64();
         let tracking = results(&tracked, "track".to_owned(), seconds);
         let file = files.into_iter().next().unwrap_or_default();
-        Ok(Results::new(tracking, file, None, true))
+        Ok(Results::new(tracking, file))
     })
 }

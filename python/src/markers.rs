@@ -186,9 +186,12 @@ pub fn correct(
             files: files.clone(),
         };
         let start = Instant::now();
-        let mut study = with_files(options.in_memory, || match options.refine {
-            true => MarkerStudy::prepare_refined(card, request, &|what| watch.tell(what)),
-            false => MarkerStudy::prepare_with(card, request, &|what| watch.tell(what)),
+        let mut study = with_files(options.in_memory, || {
+            if options.refine {
+                MarkerStudy::prepare_refined(card, request, &|what| watch.tell(what))
+            } else {
+                MarkerStudy::prepare_with(card, request, &|what| watch.tell(what))
+            }
         })?;
         let tell = |frame: &Frame| watch.tell(&format!("frame {}", frame.number));
         let estimates = study.estimate(&tell)?;
@@ -213,7 +216,10 @@ pub fn correct(
         }
         let file = files.into_iter().next().unwrap_or_default();
         let answer = worst_answer(&estimates).words().to_owned();
-        let returned = Results::new(results, file, None, true).with_frames(of_frames);
+        let returned = Results {
+            of_frames,
+            ..Results::new(results, file)
+        };
         Ok((returned, answer))
     })
 }

@@ -18,13 +18,14 @@ use crate::fields::{Arrays, arrays, blocks, places};
 /// The results of a study.
 #[pyclass(frozen, module = "gelbench._core")]
 pub struct Results {
-    results: results::Results,
+    pub results: results::Results,
     /// The file that was read.
-    file: PathBuf,
-    folder: Option<PathBuf>,
-    with_report: bool,
+    pub file: PathBuf,
+    /// The folder that the study names for its results.
+    pub folder: Option<PathBuf>,
+    pub with_report: bool,
     /// Fields and tables of frames, which the command writes as it goes.
-    of_frames: OfFrames,
+    pub of_frames: OfFrames,
 }
 
 /// Fields and tables of frames.
@@ -54,23 +55,15 @@ impl OfFrames {
 }
 
 impl Results {
-    pub fn new(
-        results: results::Results,
-        file: PathBuf,
-        folder: Option<PathBuf>,
-        with_report: bool,
-    ) -> Self {
+    /// With a report, in the usual folder.
+    pub fn new(results: results::Results, file: PathBuf) -> Self {
         Self {
             results,
             file,
-            folder,
-            with_report,
+            folder: None,
+            with_report: true,
             of_frames: OfFrames::default(),
         }
-    }
-
-    pub fn with_frames(self, of_frames: OfFrames) -> Self {
-        Self { of_frames, ..self }
     }
 
     fn series(&self) -> &[GridSeries] {

@@ -26,9 +26,10 @@ use crate::solution::{Sheet, Solution};
 
 /// What may be used.
 pub fn budget(allow_large: bool) -> Budget {
-    match allow_large {
-        true => Budget::LARGE,
-        false => Budget::USUAL,
+    if allow_large {
+        Budget::LARGE
+    } else {
+        Budget::USUAL
     }
 }
 
@@ -59,7 +60,7 @@ pub fn run_sheet(
         let progress = |what: &str| watch.tell(what);
         let ready = specimen::ready(kind, name.into(), &study, read);
         let results = ready.compute(Progress::to(&progress))?;
-        Ok(Results::new(results, name.into(), None, true))
+        Ok(Results::new(results, name.into()))
     })
 }
 
@@ -249,7 +250,11 @@ pub fn run(
         let (folder, with_report) = (ready.output.folder.clone(), ready.output.report);
         let tell = |what: &str| watch.tell(what);
         let results = ready.compute(Progress::to(&tell))?;
-        Ok(Results::new(results, path, folder, with_report))
+        Ok(Results {
+            folder,
+            with_report,
+            ..Results::new(results, path)
+        })
     })
 }
 
