@@ -39,9 +39,10 @@ impl Deviation {
 
 /// 100 (F/F₀ − 1) where both forces act along X, 100 |F − F₀|/|F₀| else.
 fn force_percent([x, y]: [f64; 2], [x0, y0]: [f64; 2]) -> f64 {
-    match y0.abs() < 1e-9 * x0.abs() {
-        true => 100.0 * (x / x0 - 1.0),
-        false => 100.0 * (x - x0).hypot(y - y0) / x0.hypot(y0),
+    if y0.abs() < 1e-9 * x0.abs() {
+        100.0 * (x / x0 - 1.0)
+    } else {
+        100.0 * (x - x0).hypot(y - y0) / x0.hypot(y0)
     }
 }
 

@@ -22,8 +22,7 @@ pub mod motion;
 mod path;
 mod plate;
 
-pub use bodies::Bodies;
-pub use bodies::meshes;
+pub use bodies::{Bodies, meshes};
 use bodies::{Body, LastBodies};
 pub use path::between_grips;
 
@@ -142,10 +141,10 @@ impl Engine {
         let (grip, colour) = (task.scene.grip, task.scene.look.colour);
         let sheet = bodies.sheet.clone();
         let known = task.scene.look.known;
-        let partly = match task.model == Model::Corrected && known != Known::ALL {
-            true => Some(bodies.partly_known(grip, known)?),
-            false => None,
-        };
+        let is_partly_known = task.model == Model::Corrected && known != Known::ALL;
+        let partly = is_partly_known
+            .then(|| bodies.partly_known(grip, known))
+            .transpose()?;
         let body = bodies.body(task.model)?;
         // What is not known at the boundary is no state that the next one goes on from.
         let (kept, force) = match partly {

@@ -197,12 +197,11 @@ fn results(
     estimates: &[FieldEstimate],
     begun: Instant,
 ) -> Results {
-    let name = question.files.first().map_or("field", |(name, _)| name);
-    let stem = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
     let known = edges::written(&question.edges, &question.edge_gap);
     let seconds = begun.elapsed().as_secs_f64();
     let pictures = Pictures::default();
-    written::results(&pictures, study, estimates, stem.to_owned(), known, seconds)
+    let stem = question.stem().to_owned();
+    written::results(&pictures, study, estimates, stem, known, seconds)
 }
 
 /// Everything that `gelbench correct` writes, what it is told of the specimen, and the line that does it again.
@@ -241,11 +240,20 @@ pub fn files(question: &FieldQuestion) -> Result<Vec<NamedFile>, Error> {
 const KNOWN: &str = "known.toml";
 
 impl FieldQuestion {
+    /// The name of the first file without its ending.
+    pub fn stem(&self) -> &str {
+        let name = self.files.first().map_or("field", |(name, _)| name);
+        name.rsplit_once('.').map_or(name, |(stem, _)| stem)
+    }
+
     /// The line of the command that does the same.
     pub fn command(&self) -> String {
-        let quoted = |text: &str| match text.contains([' ', '\'', '"', '$', '(', ';', '&']) {
-            true => format!("'{}'", text.replace('\'', "'\\''")),
-            false => text.to_owned(),
+        let quoted = |text: &str| {
+            if text.contains([' ', '\'', '"', '$', '(', ';', '&']) {
+                format!("'{}'", text.replace('\'', "'\\''"))
+            } else {
+                text.to_owned()
+            }
         };
         let names = self.files.iter().map(|(name, _)| quoted(name));
         let mut words: Vec<String> = ["gelbench".to_owned(), "correct".to_owned()]

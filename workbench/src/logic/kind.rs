@@ -1,8 +1,7 @@
 //! What a dropped file is: it finds its view by itself.
 
 use gelbench::calibration::TestData;
-use gelbench::document::Statements;
-use gelbench::document::with_files;
+use gelbench::document::{Statements, with_files};
 use gelbench::markers::{ReadSettings, read};
 use gelbench_base::document::{is_table_path, plain_name};
 use gelbench_calibration::calibration::KEYS;
@@ -100,9 +99,10 @@ impl Kind {
             })
         };
         let as_test = || TestData::parse(name, text, &Statements::new()).is_ok();
-        match is_test || (!as_field() && as_test()) {
-            true => Self::Test,
-            false => Self::Field,
+        if is_test || (!as_field() && as_test()) {
+            Self::Test
+        } else {
+            Self::Field
         }
     }
 }

@@ -186,10 +186,12 @@ fn fitted(fit: &Fit, tests: &[TestData], provenance: &Provenance) -> Fitted {
 /// So many figures of a value, however small it is.
 fn figures(value: f64, count: usize) -> String {
     let size = value.abs().log10().floor();
-    match (-4.0..count as f64).contains(&size) {
-        true => format!("{value:.*}", (count as f64 - 1.0 - size) as usize),
-        false if value == 0.0 => "0".to_owned(),
-        false => format!("{value:.*e}", count - 1),
+    if (-4.0..count as f64).contains(&size) {
+        format!("{value:.*}", (count as f64 - 1.0 - size) as usize)
+    } else if value == 0.0 {
+        "0".to_owned()
+    } else {
+        format!("{value:.*e}", count - 1)
     }
 }
 
@@ -211,9 +213,10 @@ impl CardFile {
             "–" => value.into(),
             unit => format!("{value} {unit}").into(),
         };
-        let name = match self.is_shipped() {
-            true => format!("my-{}", self.name),
-            false => self.name.clone(),
+        let name = if self.is_shipped() {
+            format!("my-{}", self.name)
+        } else {
+            self.name.clone()
         };
         let text = table.to_string();
         Some(Self { name, text })

@@ -90,34 +90,19 @@ impl Worker for Writer {
                 name,
                 vec![(format!("{name}.csv"), lines(chart).into_bytes())],
             ),
-            Wanted::Vtk(scene, fields) => {
-                let bodies = Bodies::of(scene)?;
-                written("sheet", grids(bodies, fields)?)
-            }
-            Wanted::Nodes(scene, fields) => {
-                let bodies = Bodies::of(scene)?;
-                written("sheet", nodes(bodies, scene, fields)?)
-            }
+            Wanted::Vtk(scene, fields) => written("sheet", grids(scene, fields)?),
+            Wanted::Nodes(scene, fields) => written("sheet", nodes(scene, fields)?),
             Wanted::SheetPicture(scene, fields, format) => {
-                let bodies = Bodies::of(scene)?;
-                let figure = Drawing::from(figure(bodies, scene, fields)?);
+                let figure = Drawing::from(figure(scene, fields)?);
                 written("sheet", vec![picture("sheet", &figure, *format)?])
             }
-            Wanted::Correction(question) => {
-                written(stem(question.files.first()), field::files(question)?)
-            }
+            Wanted::Correction(question) => written(question.stem(), field::files(question)?),
             Wanted::Study(question) => {
                 let name = question.study.trim_end_matches(".toml");
                 written(name, study(question)?)
             }
         }
     }
-}
-
-/// The name of a file without its ending.
-fn stem(file: Option<&NamedFile>) -> &str {
-    let name = file.map_or("field", |(name, _)| name);
-    name.rsplit_once('.').map_or(name, |(stem, _)| stem)
 }
 
 fn picture(name: &str, drawing: &Drawing, format: PictureFormat) -> Result<NamedFile, Fault> {
@@ -159,7 +144,8 @@ fn file_name(model: Model) -> &'static str {
     }
 }
 
-fn grids(mut bodies: Bodies, fields: &[ShownField]) -> Result<Vec<NamedFile>, Error> {
+fn grids(scene: &Scene, fields: &[ShownField]) -> Result<Vec<NamedFile>, Error> {
+    let mut bodies = Bodies::of(scene)?;
     let mut files = Vec::new();
     for (model, displacement, _) in fields {
         bodies.body(*model)?;
@@ -190,11 +176,8 @@ fn column(colour: Colour) -> &'static str {
     }
 }
 
-fn nodes(
-    mut bodies: Bodies,
-    scene: &Scene,
-    fields: &[ShownField],
-) -> Result<Vec<NamedFile>, Error> {
+fn nodes(scene: &Scene, fields: &[ShownField]) -> Result<Vec<NamedFile>, Error> {
+    let mut bodies = Bodies::of(scene)?;
     let mut files = Vec::new();
     for (model, displacement, values) in fields {
         let mesh = &bodies.body(*model)?.mesh;
@@ -210,7 +193,8 @@ fn nodes(
     Ok(files)
 }
 
-fn figure(mut bodies: Bodies, scene: &Scene, fields: &[ShownField]) -> Result<FieldFigure, Error> {
+fn figure(scene: &Scene, fields: &[ShownField]) -> Result<FieldFigure, Error> {
+    let mut bodies = Bodies::of(scene)?;
     let mut panels = Vec::new();
     for (model, displacement, values) in fields {
         let mesh = &bodies.body(*model)?.mesh;

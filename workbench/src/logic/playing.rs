@@ -182,9 +182,10 @@ impl Playing {
         let known = |model: &Model| {
             self.next[*model as usize].is_some() || !self.frames[*model as usize].is_empty()
         };
-        let all: Vec<Model> = match quick.iter().any(known) {
-            true => quick.into_iter().filter(known).collect(),
-            false => vec![Model::Elements],
+        let all: Vec<Model> = if quick.iter().any(known) {
+            quick.into_iter().filter(known).collect()
+        } else {
+            vec![Model::Elements]
         };
         let ends = all.iter().filter(|model| self.fault(**model).is_none());
         let end = |model: &Model| self.frames[*model as usize].last().map_or(0.0, |f| f.time);

@@ -215,9 +215,10 @@ impl CardFile {
 
     /// The name under which it is saved: that of a shipped card, or a file's.
     pub fn reference(&self) -> String {
-        match self.is_shipped() {
-            true => self.name.clone(),
-            false => format!("{}.toml", self.name.trim_end_matches(".toml")),
+        if self.is_shipped() {
+            self.name.clone()
+        } else {
+            format!("{}.toml", self.name.trim_end_matches(".toml"))
         }
     }
 }

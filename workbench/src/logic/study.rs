@@ -41,12 +41,11 @@ impl Scene {
             }
             _ => self.specimen(card, grip),
         };
-        let card = match self.card.is_shipped() {
-            true => String::new(),
-            false => {
-                let card = serde_json::to_string(&self.card).expect("a card is plain data");
-                format!("{CARD}{card}\n")
-            }
+        let card = if self.card.is_shipped() {
+            String::new()
+        } else {
+            let card = serde_json::to_string(&self.card).expect("a card is plain data");
+            format!("{CARD}{card}\n")
         };
         format!("# A study of the workbench.\n{LOOK}{look}\n{card}{body}")
     }

@@ -15,14 +15,13 @@ const DARK: u16 = 200;
 pub fn show(ui: &mut Ui, name: &str, chart: &LineChart, height: f32) {
     let of_x = scaled(chart.x.scale);
     let of_y = scaled(chart.y.scale);
-    let label = |axis: &gelbench_report::results::Axis| match axis.scale {
-        Scale::Logarithmic => format!("log₁₀ {}", axis.label),
-        _ => axis.label.clone(),
-    };
     let (dark, strong) = (ui.visuals().dark_mode, ui.visuals().strong_text_color());
-    let ink = |[r, g, b]: [u8; 3]| match dark && u16::from(r) + u16::from(g) + u16::from(b) < DARK {
-        true => strong,
-        false => Color32::from_rgb(r, g, b),
+    let ink = |[r, g, b]: [u8; 3]| {
+        if dark && u16::from(r) + u16::from(g) + u16::from(b) < DARK {
+            strong
+        } else {
+            Color32::from_rgb(r, g, b)
+        }
     };
     let mut plot = Plot::new(name.to_owned());
     if height > LEGEND {
@@ -30,8 +29,8 @@ pub fn show(ui: &mut Ui, name: &str, chart: &LineChart, height: f32) {
     }
     let plot = plot
         .height(height)
-        .x_axis_label(label(&chart.x))
-        .y_axis_label(label(&chart.y))
+        .x_axis_label(labelled(&chart.x.label, chart.x.scale))
+        .y_axis_label(labelled(&chart.y.label, chart.y.scale))
         .allow_scroll(false);
     plot.show(ui, |plot| {
         if let Some(([low, high], name)) = &chart.band {
@@ -112,7 +111,16 @@ fn between(
     FilledArea::new(line.label.clone(), &along(0), &along(1), &along(2)).fill_color(pale)
 }
 
-fn scaled(scale: Scale) -> fn(f64) -> f64 {
+/// The name of a quantity as a scale shows it.
+pub fn labelled(quantity: &str, scale: Scale) -> String {
+    match scale {
+        Scale::Logarithmic => format!("log₁₀ {quantity}"),
+        Scale::Linear | Scale::Interval => quantity.to_owned(),
+    }
+}
+
+/// From a value to its position on a scale.
+pub fn scaled(scale: Scale) -> fn(f64) -> f64 {
     match scale {
         Scale::Logarithmic => f64::log10,
         Scale::Linear | Scale::Interval => |value| value,

@@ -70,66 +70,58 @@ pub const SCENES: [Guided; 5] = [
     },
 ];
 
-fn shown(models: [Model; 2], colour: Colour) -> Look {
+/// The springs beside another model, coloured by the distance to the finite elements.
+fn springs_and(other: Model) -> Look {
     Look {
-        models: Model::ALL.map(|model| models.contains(&model)),
+        models: Model::ALL.map(|model| model == Model::Springs || model == other),
         layout: Layout::Beside,
-        colour,
+        colour: Colour::Distance,
         multipliers: false,
         cells: false,
         known: Known::ALL,
     }
 }
 
-fn stretched(stretch: f64) -> Grip {
-    Grip {
-        displacement: [stretch * Scene::default().size[0], 0.0],
+/// The usual sheet, stretched.
+fn stretched(stretch: f64, look: Look) -> Scene {
+    let scene = Scene::default();
+    let grip = Grip {
+        displacement: [stretch * scene.size[0], 0.0],
         angle: 0.0,
+    };
+    Scene {
+        grip,
+        look,
+        ..scene
     }
 }
 
 fn why_springs_are_wrong() -> Scene {
-    Scene {
-        grip: stretched(0.5),
-        look: Look {
-            multipliers: true,
-            ..shown([Model::Springs, Model::Elements], Colour::Distance)
-        },
-        ..Scene::default()
-    }
+    let look = Look {
+        multipliers: true,
+        ..springs_and(Model::Elements)
+    };
+    stretched(0.5, look)
 }
 
 fn what_one_correction_does() -> Scene {
-    Scene {
-        grip: stretched(0.3),
-        look: shown([Model::Springs, Model::Corrected], Colour::Distance),
-        ..Scene::default()
-    }
+    stretched(0.3, springs_and(Model::Corrected))
 }
 
 fn what_t_decides() -> Scene {
-    Scene {
-        grip: stretched(0.5),
-        look: Look {
-            known: Known {
-                free_edges: false,
-                ..Known::ALL
-            },
-            ..shown([Model::Springs, Model::Corrected], Colour::Distance)
-        },
-        ..Scene::default()
-    }
+    let mut look = springs_and(Model::Corrected);
+    look.known.free_edges = false;
+    stretched(0.5, look)
 }
 
 fn few_springs_then_climb() -> Scene {
+    let look = Look {
+        cells: true,
+        ..springs_and(Model::Corrected)
+    };
     Scene {
-        grip: stretched(0.5),
         cells: [12, 4],
-        look: Look {
-            cells: true,
-            ..shown([Model::Springs, Model::Corrected], Colour::Distance)
-        },
-        ..Scene::default()
+        ..stretched(0.5, look)
     }
 }
 

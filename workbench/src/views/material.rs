@@ -53,9 +53,10 @@ impl Materials {
     /// Has the tests read, so that their points can be seen.
     fn look(&mut self) {
         (self.ranking, self.chosen) = (None, 0);
-        match self.question.tests.is_empty() {
-            true => self.seen = None,
-            false => self.ask(false),
+        if self.question.tests.is_empty() {
+            self.seen = None;
+        } else {
+            self.ask(false);
         }
     }
 
@@ -357,11 +358,11 @@ fn result(ui: &mut Ui, fit: &Fitted, table: &mut Table) {
     ui.horizontal_wrapped(|ui| {
         ui.label(RichText::new(&fit.law).strong());
         if ui.button("use it for the sheet").clicked() {
-            let name = format!("fitted-{}", fit.law);
-            table.put_card(CardFile {
-                name,
+            let card = CardFile {
+                name: format!("fitted-{}", fit.law),
                 text: fit.card.clone(),
-            });
+            };
+            table.take_card(card, false);
         }
     });
     ui.label(&fit.formula);

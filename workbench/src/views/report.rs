@@ -22,9 +22,10 @@ const ROWS: usize = 200;
 /// Shows a report with its contents, whose entries lead to its headings; `name` tells its charts apart from those of others.
 pub fn show(ui: &mut Ui, name: &str, report: &Report) {
     ui.heading(&report.title);
-    let (verdict, ink) = match report.passed {
-        true => ("passed", ui.visuals().strong_text_color()),
-        false => ("not passed", ui.visuals().error_fg_color),
+    let (verdict, ink) = if report.passed {
+        ("passed", ui.visuals().strong_text_color())
+    } else {
+        ("not passed", ui.visuals().error_fg_color)
     };
     ui.colored_label(
         ink,
@@ -132,10 +133,7 @@ fn field(ui: &mut Ui, figure: &FieldFigure) {
 
 /// Fields one below the other on one colour scale.
 pub fn panels(ui: &mut Ui, quantity: &str, scale: Scale, panels: &[Panel]) {
-    let shown: fn(f64) -> f64 = match scale {
-        Scale::Logarithmic => f64::log10,
-        _ => |value| value,
-    };
+    let shown = chart::scaled(scale);
     let values = panels.iter().flat_map(Panel::corners).flatten().map(shown);
     let range = range(values).unwrap_or([0.0, 1.0]);
     for panel in panels {
@@ -154,15 +152,11 @@ pub fn panels(ui: &mut Ui, quantity: &str, scale: Scale, panels: &[Panel]) {
     }
     let (bar, _) =
         ui.allocate_exact_size(vec2(ui.available_width().min(600.0), 34.0), Sense::hover());
-    let name = match scale {
-        Scale::Logarithmic => format!("log₁₀ {quantity}"),
-        _ => quantity.to_owned(),
-    };
     let span = Span {
         range,
         exceeded: [false; 2],
     };
-    colour_bar(ui, &name, span, bar);
+    colour_bar(ui, &chart::labelled(quantity, scale), span, bar);
 }
 
 fn surface(panel: &Panel, view: View, ink: impl Fn(f64) -> Color32) -> Triangles {

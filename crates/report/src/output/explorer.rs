@@ -208,10 +208,14 @@ fn packed(values: Vec<f64>) -> Value {
     if low > high {
         return Value::Null;
     }
-    let share = |value: f64| match value.is_finite() {
-        true if high > low => (WHOLE * ((value - low) / (high - low))).round() as u16,
-        true => 0,
-        false => u16::MAX,
+    let share = |value: f64| {
+        if !value.is_finite() {
+            u16::MAX
+        } else if high > low {
+            (WHOLE * ((value - low) / (high - low))).round() as u16
+        } else {
+            0
+        }
     };
     let bytes: Vec<u8> = values
         .into_iter()

@@ -96,12 +96,9 @@ fn meshes_of(Specimen { outline, .. }: &Specimen) -> [Mesh; 2] {
     [outline.lattice(), elements]
 }
 
-/// The bodies of the last scene, made anew where its sheet is another one.
+/// The last scene with its bodies, which are built again for a scene with another sheet.
 #[derive(Default)]
-pub struct LastBodies {
-    scene: Option<Scene>,
-    bodies: Option<Bodies>,
-}
+pub struct LastBodies(Option<(Scene, Bodies)>);
 
 impl LastBodies {
     /// Those of a scene.
@@ -109,13 +106,14 @@ impl LastBodies {
     /// # Errors
     /// As [`Bodies::of`].
     pub fn of(&mut self, scene: &Scene) -> Result<&mut Bodies, Error> {
-        let known = self.scene.as_ref();
-        if !known.is_some_and(|known| known.same_sheet(scene)) {
-            (self.scene, self.bodies) = (None, None);
-            self.bodies = Some(Bodies::of(scene)?);
-            self.scene = Some(scene.clone());
+        let known = self.0.as_ref();
+        if !known.is_some_and(|(known, _)| known.same_sheet(scene)) {
+            // The memory of the former bodies is free while the next ones are built.
+            self.0 = None;
+            self.0 = Some((scene.clone(), Bodies::of(scene)?));
         }
-        Ok(self.bodies.as_mut().expect("bodies were made"))
+        let (_, bodies) = self.0.as_mut().expect("bodies were made");
+        Ok(bodies)
     }
 }
 

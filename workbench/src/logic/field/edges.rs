@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use gelbench::error::Error;
 use gelbench::estimation::EdgeCondition;
+use gelbench_base::document::quoted;
 use gelbench_report::results::MeshFigure;
 
 use super::length;
@@ -87,11 +88,6 @@ impl Edge {
     }
 }
 
-/// A text as TOML writes it.
-fn quoted(text: &str) -> String {
-    toml::Value::from(text).to_string()
-}
-
 /// What is known of a specimen as the file that `gelbench correct --study` takes.
 pub fn written(edges: &BTreeMap<String, Edge>, edge_gap: &str) -> String {
     let mut text = String::from("# What is known of the specimen besides its markers.\n");
@@ -131,9 +127,10 @@ pub fn nearest(figure: &MeshFigure, position: [f64; 2], reach: f64) -> Option<&s
 fn distance([x, y]: [f64; 2], [[ax, ay], [bx, by]]: [[f64; 2]; 2]) -> f64 {
     let ([lx, ly], [px, py]) = ([bx - ax, by - ay], [x - ax, y - ay]);
     let square = lx * lx + ly * ly;
-    let share = match square > 0.0 {
-        true => ((px * lx + py * ly) / square).clamp(0.0, 1.0),
-        false => 0.0,
+    let share = if square > 0.0 {
+        ((px * lx + py * ly) / square).clamp(0.0, 1.0)
+    } else {
+        0.0
     };
     (px - share * lx).hypot(py - share * ly)
 }

@@ -78,8 +78,9 @@ pub(super) fn request(question: &FieldQuestion) -> Result<Request, Error> {
 pub(super) fn unit(text: &str) -> Result<Option<f64>, Error> {
     let text = text.trim();
     let begins_with_number = text.starts_with(|first: char| first.is_ascii_digit() || first == '.');
-    match text.is_empty() || begins_with_number {
-        true => length("the unit", text),
-        false => length("the unit", &format!("1 {text}")),
+    if text.is_empty() || begins_with_number {
+        length("the unit", text)
+    } else {
+        length("the unit", &format!("1 {text}"))
     }
 }

@@ -6,12 +6,12 @@ use gelbench::error::Error;
 use gelbench::material::Card;
 
 use super::{Action, Table};
+use crate::logic::kind::Kind;
 use crate::logic::scene::{CardFile, Scene};
 
 impl Table {
     pub(super) fn open(&mut self, file: &str, text: &str) -> Result<(), Error> {
-        let table = text.parse::<toml::Table>().unwrap_or_default();
-        if !table.contains_key("law") {
+        if !Kind::is_card(text) {
             let scene = Scene::open(Path::new(file), text, &self.cards)?;
             self.remember(&scene.card);
             self.scene.change(scene, false);
@@ -21,16 +21,12 @@ impl Table {
             .file_stem()
             .map_or_else(String::new, |stem| stem.to_string_lossy().into());
         let card = Card::parse(&name, file, text)?;
-        self.put_card(CardFile {
+        let card = CardFile {
             name: card.name,
             text: card.text,
-        });
-        Ok(())
-    }
-
-    /// Takes a card and makes the sheet of it.
-    pub fn put_card(&mut self, card: CardFile) {
+        };
         self.take_card(card, false);
+        Ok(())
     }
 
     /// Keeps a card of the user's own among those to choose from.
@@ -41,7 +37,7 @@ impl Table {
         }
     }
 
-    /// The same while something may be held, such as a slider of a parameter.
+    /// Takes a card and makes the sheet of it; `gesture` where something is held, such as the slider of a parameter.
     pub fn take_card(&mut self, card: CardFile, gesture: bool) {
         self.remember(&card);
         let scene = Box::new(Scene {

@@ -70,19 +70,14 @@ impl Workbench {
                 ui.separator();
             }
             let [undo, redo] = self.table.steps().map(|has| has && self.shows_table());
-            if ui
-                .add_enabled(undo, egui::Button::new("undo"))
-                .on_hover_text("Ctrl+Z")
-                .clicked()
-            {
-                self.table.act(Action::Undo);
-            }
-            if ui
-                .add_enabled(redo, egui::Button::new("redo"))
-                .on_hover_text("Ctrl+Y")
-                .clicked()
-            {
-                self.table.act(Action::Redo);
+            for (is_possible, name, keys, action) in [
+                (undo, "undo", "Ctrl+Z", Action::Undo),
+                (redo, "redo", "Ctrl+Y", Action::Redo),
+            ] {
+                let button = ui.add_enabled(is_possible, egui::Button::new(name));
+                if button.on_hover_text(keys).clicked() {
+                    self.table.act(action);
+                }
             }
             self.file_menu(ui);
             let export = ui.menu_button("export", |ui| self.offered(ui)).response;

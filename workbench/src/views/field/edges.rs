@@ -166,9 +166,10 @@ fn markers(ui: &mut Ui, view: View, area: Rect, preview: &Preview) {
         painter.circle_filled(from, 1.5, ink);
         painter.line_segment([from, to], Stroke::new(1.0, ink.gamma_multiply(0.6)));
     }
-    let words = match shown < 1.0 {
-        true => format!("displacements magnified {shown:.2} times"),
-        false => "their displacements".to_owned(),
+    let words = if shown < 1.0 {
+        format!("displacements magnified {shown:.2} times")
+    } else {
+        "their displacements".to_owned()
     };
     let words = format!("points: the markers of the last frame at rest; lines: {words}");
     ui.label(RichText::new(words).small());

@@ -27,9 +27,10 @@ impl Fields {
         let Some(frame) = frames.get(self.frame) else {
             return;
         };
-        let ink = match frame.explained {
-            true => ui.visuals().strong_text_color(),
-            false => ui.visuals().error_fg_color,
+        let ink = if frame.explained {
+            ui.visuals().strong_text_color()
+        } else {
+            ui.visuals().error_fg_color
         };
         ui.label(
             RichText::new(format!(
@@ -40,9 +41,12 @@ impl Fields {
             .strong(),
         );
         for (edge, [x, y]) in &frame.forces {
-            let axis = |[value, low, high]: &[f64; 3]| match frame.explained {
-                true => format!("{value:.4} N ({low:.4} … {high:.4})"),
-                false => format!("{value:.4} N (no interval)"),
+            let axis = |[value, low, high]: &[f64; 3]| {
+                if frame.explained {
+                    format!("{value:.4} N ({low:.4} … {high:.4})")
+                } else {
+                    format!("{value:.4} N (no interval)")
+                }
             };
             ui.label(format!("force on {edge}: x {}, y {}", axis(x), axis(y)));
         }
@@ -95,9 +99,10 @@ fn residuals(ui: &mut Ui, frame: &CorrectedFrame) {
     let (view, area) = report::room(ui, positions.iter());
     let painter = ui.painter().with_clip_rect(area);
     for (position, residual, trust) in &frame.residuals {
-        let ink = match *trust > 0.5 {
-            true => ui.visuals().text_color(),
-            false => ui.visuals().error_fg_color,
+        let ink = if *trust > 0.5 {
+            ui.visuals().text_color()
+        } else {
+            ui.visuals().error_fg_color
         };
         let to = [0, 1].map(|axis| position[axis] + enlarged * residual[axis]);
         painter.circle_filled(view.at(*position), 1.5, ink);

@@ -150,9 +150,10 @@ impl Files {
             .files
             .iter()
             .any(|(path, content)| agreed != Some(path) && self.is_of_others(path, content));
-        match others {
-            true => self.asked = Some(placed),
-            false => self.write(placed),
+        if others {
+            self.asked = Some(placed);
+        } else {
+            self.write(placed);
         }
     }
 
@@ -230,12 +231,12 @@ impl Outgoing {
 
 impl Dialogue {
     fn without_choice(&self) -> Event {
-        let message = match self.begun.elapsed() < SEEN {
-            true => {
-                "the system shows no dialogue for files: xdg-desktop-portal or zenity is missing. Files can be dropped on the window"
-            }
-            false if self.outgoing.is_some() => "nothing was saved",
-            false => "nothing was opened",
+        let message = if self.begun.elapsed() < SEEN {
+            "the system shows no dialogue for files: xdg-desktop-portal or zenity is missing. Files can be dropped on the window"
+        } else if self.outgoing.is_some() {
+            "nothing was saved"
+        } else {
+            "nothing was opened"
         };
         Event::Failed(message.to_owned())
     }

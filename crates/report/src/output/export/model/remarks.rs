@@ -109,12 +109,12 @@ impl Model<'_> {
     fn time(&self) -> &'static str {
         let factors = self.given.factors;
         let grow = |pair: &[f64]| pair[1].abs() > pair[0].abs();
-        match factors.windows(2).all(grow) {
-            true if factors[0] < 0.0 => "the total time is the load factor without its sign",
-            true => "the total time is the load factor",
-            false => {
-                "the total time is the length of the path of load factors, each of which stands before its step"
-            }
+        if !factors.windows(2).all(grow) {
+            "the total time is the length of the path of load factors, each of which stands before its step"
+        } else if factors[0] < 0.0 {
+            "the total time is the load factor without its sign"
+        } else {
+            "the total time is the load factor"
         }
     }
 
