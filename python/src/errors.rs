@@ -10,6 +10,11 @@ pub fn exception(py: Python<'_>, error: &Error) -> PyErr {
     converted(py, error).unwrap_or_else(|fault| fault)
 }
 
+/// A result of the library, whose error becomes an exception.
+pub fn raised<T>(py: Python<'_>, result: Result<T, Error>) -> PyResult<T> {
+    result.map_err(|error| exception(py, &error))
+}
+
 fn converted(py: Python<'_>, error: &Error) -> PyResult<PyErr> {
     let module = py.import("gelbench._errors")?;
     let raised = match error {

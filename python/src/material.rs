@@ -18,7 +18,7 @@ use gelbench_mechanics::material::parameters::{StrainMeasure, StressMeasure};
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 
-use crate::errors::{exception, input, refused};
+use crate::errors::{input, raised, refused};
 use crate::law::Watched;
 use crate::running::{Watch, caught};
 
@@ -159,14 +159,13 @@ fn without_fit(text: &str) -> String {
 impl MaterialCard {
     #[staticmethod]
     fn load(py: Python<'_>, name: &str, folder: &str) -> PyResult<Self> {
-        let card = Card::load(name, Path::new(folder));
-        card.map(Self::of).map_err(|error| exception(py, &error))
+        raised(py, Card::load(name, Path::new(folder)).map(Self::of))
     }
 
     #[staticmethod]
     fn parse(py: Python<'_>, name: &str, text: &str) -> PyResult<Self> {
         let card = Card::parse(name, &format!("{name}.toml"), text);
-        card.map(Self::of).map_err(|error| exception(py, &error))
+        raised(py, card.map(Self::of))
     }
 
     /// A law with what is known of it: parameters, moduli, density, convention; numbers or texts with a unit.
@@ -179,13 +178,12 @@ impl MaterialCard {
     ) -> PyResult<Self> {
         let text = known(law, &values).and_then(|known| known.card_text(name));
         let card = text.and_then(|text| Card::parse(name, name, &text));
-        card.map(Self::of).map_err(|error| exception(py, &error))
+        raised(py, card.map(Self::of))
     }
 
     /// The same law with other values of some parameters, each a number or a text with a unit.
     fn with_parameters(&self, py: Python<'_>, values: BTreeMap<String, String>) -> PyResult<Self> {
-        let card = self.changed(&values);
-        card.map(Self::of).map_err(|error| exception(py, &error))
+        raised(py, self.changed(&values).map(Self::of))
     }
 
     #[getter]
@@ -258,14 +256,11 @@ impl MaterialCard {
     }
 
     fn stable_range(&self, py: Python<'_>, test: &str) -> PyResult<(f64, f64)> {
-        let mode = mode(test).map_err(|error| exception(py, &error))?;
-        let Some(mode) = mode else {
-            let error = input(
-                "the stable range of simple shear is not computed",
-                "use another test",
-            );
-            return Err(exception(py, &error));
-        };
+        let mode = mode(test).and_then(|mode| {
+            let message = "the stable range of simple shear is not computed";
+            mode.ok_or_else(|| input(message, "use another test"))
+        });
+        let mode = raised(py, mode)?;
         caught(py, || stable_range(&*self.card.law, mode).into())
     }
 
@@ -276,7 +271,7 @@ impl MaterialCard {
         test: &str,
         stretches: PyReadonlyArray1<'py, f64>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let mode = mode(test).map_err(|error| exception(py, &error))?;
+        let mode = raised(py, mode(test))?;
         let stretches = stretches.as_slice()?;
         let law: &dyn HyperelasticLaw = &*self.card.law;
         let at = |stretch: &f64| match mode {
@@ -308,8 +303,7 @@ pub fn materials(py: Python<'_>) -> PyResult<Vec<(String, String)>> {
         let card = Card::parse(name, &format!("{name}.toml"), text);
         card.map(|card| (card.name, card.title))
     };
-    let cards: Result<_, _> = CARDS.iter().map(read).collect();
-    cards.map_err(|error| exception(py, &error))
+    raised(py, CARDS.iter().map(read).collect())
 }
 
 /// The names and energies of the laws.

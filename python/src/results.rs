@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use gelbench::error::Error;
 use gelbench::output::ResultFolder;
-use gelbench::results::{self, Content, GridSeries};
+use gelbench::results::{self, Content, Drawing, GridSeries};
 use gelbench_report::output::{self, vtk};
 use gelbench_report::results::NamedGrid;
 use numpy::PyArray2;
@@ -12,8 +12,13 @@ use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
-use crate::errors::exception;
+use crate::errors::{raised, refused};
 use crate::fields::{Arrays, arrays, blocks, places};
+
+/// A picture as a PNG.
+pub fn drawn(drawing: &Drawing) -> Result<Vec<u8>, Error> {
+    output::png(drawing).map_err(|fault| refused(fault.to_string()))
+}
 
 /// The results of a study.
 #[pyclass(frozen, module = "gelbench._core")]
@@ -135,7 +140,7 @@ impl Results {
     fn markdown(&self, py: Python<'_>) -> String {
         py.detach(|| {
             let figures = &self.results.outcome.figures;
-            output::markdown(&self.results.report(), figures, &|_| None)
+            output::markdown(&self.results.report(), figures)
         })
     }
 
@@ -163,10 +168,8 @@ impl Results {
     fn picture<'py>(&self, py: Python<'py>, number: usize) -> PyResult<Bound<'py, PyBytes>> {
         let figure = self.results.outcome.figures.get(number);
         let figure = figure.ok_or_else(|| PyIndexError::new_err("there is no such picture"))?;
-        let drawn = py.detach(|| output::png(&figure.drawing));
-        let drawn =
-            drawn.map_err(|fault| exception(py, &crate::errors::refused(fault.to_string())))?;
-        Ok(PyBytes::new(py, &drawn))
+        let picture = raised(py, py.detach(|| drawn(&figure.drawing)))?;
+        Ok(PyBytes::new(py, &picture))
     }
 
     /// The names of the fields, with the load factors, stretches or times of each.
@@ -216,6 +219,6 @@ impl Results {
             output::write(&self.results, self.with_report, &mut files)?;
             files.finish()
         });
-        written.map_err(|error| exception(py, &error))
+        raised(py, written)
     }
 }

@@ -18,7 +18,7 @@ use gelbench_studies::studies::{ModelKind, plate};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
-use crate::errors::{choice, exception, input, refused};
+use crate::errors::{choice, exception, input, raised, refused};
 use crate::material::{MaterialCard, watched};
 use crate::results::Results;
 use crate::running::{Watch, run as run_watched};
@@ -75,7 +75,7 @@ pub fn check_sheet(
 ) -> PyResult<()> {
     // Whether a study is too large is said of the models that are solved.
     let read = py.detach(|| read_sheet(study, files, mesh, true));
-    read.map(drop).map_err(|error| exception(py, &error))
+    raised(py, read.map(drop))
 }
 
 /// The kind of a study, and its name.
@@ -147,7 +147,7 @@ impl GivenMesh {
             ..MeshData::default()
         };
         for (kind, points) in cells {
-            let shape = shape(kind).map_err(|error| exception(py, &error))?;
+            let shape = raised(py, shape(kind))?;
             for cell in points.as_slice()?.chunks(points.shape()[1].max(1)) {
                 data.cells.push((shape, numbers(cell)?));
             }
@@ -192,8 +192,7 @@ pub fn solve_sheet(
     progress: Option<Py<PyAny>>,
     allow_large: bool,
 ) -> PyResult<Solution> {
-    let kind = choice("model", model, &ModelKind::NAMES);
-    let kind = kind.map_err(|error| exception(py, &error))?;
+    let kind = raised(py, choice("model", model, &ModelKind::NAMES))?;
     let work = |watch: &Arc<Watch>| {
         let Loaded {
             content: read,
@@ -289,5 +288,5 @@ pub fn check(
         let warnings = ready.warnings.iter().map(ToString::to_string).collect();
         Ok((ready.about, warnings))
     });
-    checked.map_err(|error: Error| exception(py, &error))
+    raised(py, checked)
 }

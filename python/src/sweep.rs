@@ -4,7 +4,6 @@ use std::collections::{BTreeMap, HashMap};
 use std::path::{Path, PathBuf};
 
 use gelbench::error::{Diagnostic, Error};
-use gelbench::output;
 use gelbench::sweep::{
     self, BaseStudy, FittedParameters, Method, Points, Row, Run, Sampling, Setting, Shard, Share,
     SweepFolder, Values, Variable,
@@ -15,8 +14,9 @@ use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 
-use crate::errors::{choice, exception, input, refused};
+use crate::errors::{choice, input, raised, refused};
 use crate::fields::frozen;
+use crate::results::drawn;
 use crate::running::run as run_watched;
 use crate::study::budget;
 
@@ -52,15 +52,13 @@ pub fn distributions(py: Python<'_>, vary: Vec<(String, Varied)>) -> PyResult<Ve
             }
         }
     };
-    let distributions: Result<Vec<_>, Error> = vary.iter().map(of).collect();
-    distributions.map_err(|error| exception(py, &error))
+    raised(py, vary.iter().map(of).collect())
 }
 
 /// The text of a study or a fit.
 #[pyfunction]
 pub fn text_of_file(py: Python<'_>, path: PathBuf) -> PyResult<String> {
-    let read = py.detach(|| read_text(&path));
-    read.map_err(|error| exception(py, &error))
+    raised(py, py.detach(|| read_text(&path)))
 }
 
 const METHODS: [(&str, Method); 2] = [("sobol", Method::Sobol), ("random", Method::Random)];
@@ -119,7 +117,7 @@ impl Sweep {
             sweep.study.read()?;
             Ok(Self { sweep, runs })
         };
-        py.detach(planned).map_err(|error| exception(py, &error))
+        raised(py, py.detach(planned))
     }
 
     fn __len__(&self) -> usize {
@@ -182,8 +180,7 @@ impl Sweep {
     /// The tables of all parts as one.
     fn join(&self, py: Python<'_>, tables: Vec<PyRef<'_, SweepTable>>) -> PyResult<SweepTable> {
         let rows = tables.iter().flat_map(|table| table.rows.clone());
-        let rows = sweep::join(&self.runs, rows.collect());
-        let rows = rows.map_err(|error| exception(py, &error))?;
+        let rows = raised(py, sweep::join(&self.runs, rows.collect()))?;
         Ok(SweepTable::of(&self.sweep, rows))
     }
 }
@@ -261,7 +258,7 @@ impl SweepTable {
     fn parse(py: Python<'_>, name: String, keys: Vec<String>, table: &[u8]) -> PyResult<Self> {
         let rows = sweep::read(Path::new(&name), keys.len(), table);
         Ok(Self {
-            rows: rows.map_err(|error| exception(py, &error))?,
+            rows: raised(py, rows)?,
             name,
             keys,
             // A table does not tell the kind of its study.
@@ -356,11 +353,10 @@ impl SweepTable {
             let figures = sweep::figures(&self.keys, &self.rows, self.along);
             let drawn = figures
                 .iter()
-                .map(|figure| Ok((figure.name.clone(), output::png(&figure.drawing)?)));
-            drawn.collect::<Result<Vec<_>, output::PictureFault>>()
+                .map(|figure| Ok((figure.name.clone(), drawn(&figure.drawing)?)));
+            drawn.collect::<Result<Vec<_>, Error>>()
         });
-        let drawn = drawn.map_err(|fault| exception(py, &refused(fault.to_string())))?;
-        let drawn = drawn.into_iter();
+        let drawn = raised(py, drawn)?.into_iter();
         Ok(drawn
             .map(|(name, picture)| (name, PyBytes::new(py, &picture)))
             .collect())

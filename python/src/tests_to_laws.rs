@@ -12,8 +12,6 @@ use gelbench::identification::{
 };
 use gelbench::material::Card;
 use gelbench::material::registry::Law;
-use gelbench::output;
-use gelbench::results::Drawing;
 use gelbench_base::error::suggestion;
 use gelbench_calibration::calibration::KEYS;
 use gelbench_report::results::{
@@ -23,6 +21,7 @@ use pyo3::prelude::*;
 
 use crate::errors::{input, refused};
 use crate::material::MaterialCard;
+use crate::results::drawn;
 use crate::running::run;
 
 /// JSON, card or law, picture.
@@ -124,10 +123,6 @@ fn chosen<T: Copy>(what: &str, name: &str, names: &[(&'static str, T)]) -> Resul
         let hint = format!("it must be one of {}", known.join(", "));
         input(format!("{what} `{name}` is not known"), hint)
     })
-}
-
-fn drawn(drawing: &Drawing) -> Result<Vec<u8>, Error> {
-    output::png(drawing).map_err(|fault| refused(fault.to_string()))
 }
 
 /// Finds K(·) and D(·) in a recording by its name and table: JSON, text of the law, picture.

@@ -2,17 +2,12 @@
 
 use crate::results::{Block, Figure};
 
-/// Markdown with pictures beside it; `missing` says why a picture is not there.
-pub fn markdown(
-    blocks: &[Block],
-    figures: &[Figure],
-    missing: &dyn Fn(usize) -> Option<String>,
-) -> String {
-    let file = |index: usize| missing(index).map_or_else(|| Ok(figures[index].name.clone()), Err);
-    markdown_of_files(blocks, &file)
+/// Markdown with pictures beside it.
+pub fn markdown(blocks: &[Block], figures: &[Figure]) -> String {
+    markdown_of_files(blocks, &|index| Ok(figures[index].name.clone()))
 }
 
-/// The same, where `file` names the file of a picture or says why there is none.
+/// Markdown in which `file` names the file of a picture, or says why there is none.
 pub(super) fn markdown_of_files(
     blocks: &[Block],
     file: &dyn Fn(usize) -> Result<String, String>,
