@@ -27,8 +27,8 @@ impl<W: Worker> Link<W> {
         let options = WorkerOptions::new();
         options.set_type(WorkerType::Module);
         options.set_name(W::NAME);
-        let worker = web_sys::Worker::new_with_options(SCRIPT, &options);
-        let worker = worker.expect("a browser with module workers");
+        let worker = web_sys::Worker::new_with_options(SCRIPT, &options)
+            .expect("a browser with module workers");
         let answers = Rc::new(RefCell::new(VecDeque::new()));
         let received = Rc::clone(&answers);
         let listener = Closure::new(move |event: MessageEvent| {

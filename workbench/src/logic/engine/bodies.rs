@@ -222,8 +222,8 @@ impl Sheet {
         let [x, y] = grip.lines(self.axis).map(Some);
         let clamp = Support::Displacement([Some(0.0); 2]);
         let moved = Support::LinearDisplacement([x, y]);
-        let supports = [(Side::Left, clamp), (Side::Right, moved)];
-        let supports = supports.map(|(side, support)| (side.name().to_owned(), support));
+        let supports = [(Side::Left, clamp), (Side::Right, moved)]
+            .map(|(side, support)| (side.name().to_owned(), support));
         BoundaryProblem::supported(self.thickness, Arc::clone(&self.law), supports.into())
     }
 }

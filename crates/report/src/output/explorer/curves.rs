@@ -129,8 +129,8 @@ mod tests {
             "noise_mm": 0.2, "is_white": true,
             "forces": [{ "edge": "right", "x_N": { "value": 1.5 }, "y_N": { "value": null } }],
         });
-        let expected = [("force_on_right_along_x_N", 1.5), ("noise_mm", 0.2)];
-        let expected = expected.map(|(name, value)| (name.to_owned(), value));
+        let expected = [("force_on_right_along_x_N", 1.5), ("noise_mm", 0.2)]
+            .map(|(name, value)| (name.to_owned(), value));
         assert_eq!(of_model(&model), Numbers::from(expected));
     }
 }

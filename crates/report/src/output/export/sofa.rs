@@ -69,10 +69,8 @@ impl Scene<'_> {
         self.check()?;
         let mesh = &self.springs.mesh;
         let times = KeyTimes::new(self.problem, self.factors);
-        let held = Held::of(self.problem, mesh, &times);
-        let held = held?;
-        let forces = self.problem.dead_forces(mesh);
-        let forces = forces?;
+        let held = Held::of(self.problem, mesh, &times)?;
+        let forces = self.problem.dead_forces(mesh)?;
         let mut file = Xml::new();
         for line in self.head() {
             file.comment(&line);

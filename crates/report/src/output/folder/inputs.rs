@@ -25,8 +25,8 @@ pub fn positions(files: &[&Path]) -> Vec<PathBuf> {
 /// A file as one in `folder` names it.
 pub fn relative(path: &Path, folder: &Path) -> String {
     let absolute = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
-    let relative_path = pathdiff::diff_paths(absolute(path), absolute(folder));
-    let relative_path = relative_path.unwrap_or_else(|| path.to_owned());
+    let relative_path =
+        pathdiff::diff_paths(absolute(path), absolute(folder)).unwrap_or_else(|| path.to_owned());
     relative_path.to_string_lossy().replace('\\', "/")
 }
 

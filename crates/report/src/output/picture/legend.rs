@@ -147,8 +147,7 @@ fn entries(chart: &LineChart, look: Look, width: f64) -> Vec<Entry<'_>> {
     let named = chart.lines.iter().filter(|line| !line.label.is_empty());
     let named = named.map(|line| (Sample::Line(line), &*line.label));
     let joins = chart.dashes().map(|words| (Sample::Joins, words));
-    let band = chart.band.as_ref();
-    let band = band.map(|(_, name)| (Sample::Band, &**name));
+    let band = chart.band.as_ref().map(|(_, name)| (Sample::Band, &**name));
     let notes = chart.notes.iter().map(|note| (Sample::Nothing, &**note));
     let all = named.chain(joins).chain(band).chain(notes);
     let entries = all.map(|(sample, words)| {
