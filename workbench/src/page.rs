@@ -43,16 +43,16 @@ pub fn tell(bench: &Workbench, context: &Context) {
     };
     let [springs, corrected, elements] = Model::ALL.map(model);
     let fits = bench
-        .materials()
+        .materials
         .ranking()
         .and_then(|ranking| ranking.as_ref().ok());
     let answer = bench
-        .fields()
+        .fields
         .answer()
         .and_then(|answer| answer.as_ref().ok());
     let frames = answer.and_then(|answer| answer.corrected.as_ref());
     let report = bench
-        .studies()
+        .studies
         .report()
         .and_then(|report| report.as_ref().ok());
     let state = json!({
@@ -60,11 +60,11 @@ pub fn tell(bench: &Workbench, context: &Context) {
         "size": [room.width(), room.height()],
         "pixels_per_point": context.pixels_per_point(),
         "dark": context.theme() == Theme::Dark,
-        "tab": format!("{:?}", bench.tab()),
-        "places": bench.positions().iter().map(|(name, at)| (name, [at.x, at.y])).collect::<BTreeMap<_, _>>(),
-        "moving": table.moving().map(|moving| [moving.clock(), moving.computed(), moving.duration()]),
-        "told": bench.message(),
-        "grip_at": bench.grip_at().map(|at| [at.x, at.y]),
+        "tab": format!("{:?}", bench.tab),
+        "places": bench.positions.iter().map(|(name, at)| (name, [at.x, at.y])).collect::<BTreeMap<_, _>>(),
+        "moving": table.moving().map(|moving| [moving.clock(), moving.computed(), moving.duration]),
+        "told": bench.message,
+        "grip_at": bench.grip_at.map(|at| [at.x, at.y]),
         "fits": fits.map(|ranking| ranking.fits.iter().map(|fit| (&fit.law, &fit.parameters)).collect::<Vec<_>>()),
         "verdicts": frames.map(|(frames, _)| frames.iter().map(|frame| (&frame.verdict, &frame.forces)).collect::<Vec<_>>()),
         "report": report.map(|report| (&report.title, report.passed, report.blocks.len())),

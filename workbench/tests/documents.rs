@@ -192,7 +192,7 @@ fn exports_of_several_files_have_a_folder_of_their_own_and_replace_nothing_unask
     bench.run_steps(2);
     bench.get_by_label("the fields as VTK …").click();
     bench.step();
-    until(&mut bench, |bench| bench.message() != "writing …");
+    until(&mut bench, |bench| bench.message != "writing …");
     let asks = "springs.vtu is there already";
     bench.run_steps(3);
     assert_eq!(*asked.borrow(), [Choice::Folder("sheet".to_owned())]);
@@ -229,7 +229,7 @@ fn a_window_with_changes_closes_only_once_the_user_has_said_what_becomes_of_them
 #[test]
 fn a_study_that_was_written_is_not_lost_to_another_one() {
     let (mut bench, _) = answered(&[]);
-    state_mut(&mut bench).turn_to(Tab::Study);
+    state_mut(&mut bench).tab = Tab::Study;
     bench.step();
     let editor = bench.get_by_role(eframe::egui::accesskit::Role::MultilineTextInput);
     editor.focus();
@@ -244,7 +244,7 @@ fn a_study_that_was_written_is_not_lost_to_another_one() {
         state_mut(&mut bench).open("motion.toml", motion);
         bench.step();
         choose(&mut bench, answer);
-        assert_eq!(state(&bench).studies().text().contains("# mine"), is_mine);
+        assert_eq!(state(&bench).studies.text().contains("# mine"), is_mine);
     }
     assert!(!state(&bench).is_changed(Tab::Study));
 }
@@ -253,7 +253,7 @@ fn a_study_that_was_written_is_not_lost_to_another_one() {
 fn a_desktop_without_dialogues_says_what_is_missing() {
     let (mut bench, _) = answered(&[]);
     press(&mut bench, Modifiers::COMMAND, Key::O);
-    let message = state(&bench).message();
+    let message = &state(&bench).message;
     assert!(message.contains("xdg-desktop-portal"), "{message}");
 }
 
@@ -263,14 +263,14 @@ fn keys_in_the_view_of_studies_save_and_take_back_nothing_of_the_sheet() {
     let (mut bench, asked) = answered(&[folder.at("study.toml"), folder.at("sheet.toml")]);
     pull(&mut bench, 60.0);
     let pulled = state(&bench).table.scene().clone();
-    state_mut(&mut bench).turn_to(Tab::Study);
+    state_mut(&mut bench).tab = Tab::Study;
     bench.step();
     for key in [Key::Z, Key::S] {
         press(&mut bench, Modifiers::COMMAND, key);
     }
     assert_eq!(*state(&bench).table.scene(), pulled);
-    assert_eq!(folder.text("study.toml"), state(&bench).studies().text());
-    state_mut(&mut bench).turn_to(Tab::Sheet);
+    assert_eq!(folder.text("study.toml"), state(&bench).studies.text());
+    state_mut(&mut bench).tab = Tab::Sheet;
     bench.step();
     for key in [Key::Z, Key::S] {
         press(&mut bench, Modifiers::COMMAND, key);

@@ -119,7 +119,7 @@ fn the_window_goes_on_whatever_is_dropped_on_it() {
     let text = small().study();
     state_mut(&mut bench).open("small.toml", text.as_bytes());
     bench.step();
-    assert_eq!(state(&bench).tab(), Tab::Sheet);
+    assert_eq!(state(&bench).tab, Tab::Sheet);
     until(&mut bench, |bench| bench.table.is_settled());
     assert!(state(&bench).table.shown(Model::Corrected).is_some());
 }

@@ -15,7 +15,7 @@ use common::{Bench, small, state, state_mut, until, window};
 const MESH: &str = "mesh of the field";
 
 fn looked(bench: &Workbench) -> bool {
-    bench.fields().answer().is_some_and(|answer| answer.is_ok())
+    bench.fields.answer().is_some_and(|answer| answer.is_ok())
 }
 
 fn opened() -> Bench {
@@ -26,19 +26,19 @@ fn opened() -> Bench {
     for _ in 0..3 {
         bench.step();
     }
-    assert_eq!(state(&bench).tab(), Tab::Field);
+    assert_eq!(state(&bench).tab, Tab::Field);
     bench
 }
 
 /// Where the middle of an edge is on the screen.
 fn place_of(bench: &Bench, edge: &str) -> Pos2 {
-    let answer = state(bench).fields().answer().unwrap().as_ref().unwrap();
+    let answer = state(bench).fields.answer().unwrap().as_ref().unwrap();
     let Drawing::Mesh(figure) = &answer.preview.drawing else {
         panic!("a mesh is drawn");
     };
     let group = figure.groups.iter().find(|group| group.name == edge);
     let middle = middle(&group.unwrap().lines).unwrap();
-    let view = state(bench).fields().view().unwrap();
+    let view = state(bench).fields.view().unwrap();
     view.at(middle)
 }
 
@@ -61,7 +61,7 @@ fn click(bench: &mut Bench, at: Pos2) {
 }
 
 fn statement_of(bench: &Bench, edge: &str) -> Edge {
-    state(bench).fields().edge(edge).unwrap().clone()
+    state(bench).fields.edge(edge).unwrap().clone()
 }
 
 #[test]
@@ -89,7 +89,7 @@ fn an_edge_that_is_clicked_asks_what_is_known_of_it() {
     bench.get_by_label("correct").click();
     bench.step();
     let corrected = |bench: &Workbench| {
-        let answer = bench.fields().answer().unwrap().as_ref().unwrap();
+        let answer = bench.fields.answer().unwrap().as_ref().unwrap();
         answer.corrected.is_some()
     };
     until(&mut bench, corrected);
@@ -108,16 +108,13 @@ fn a_known_edge_takes_its_displacement_and_a_wrong_one_is_told() {
     bench.step();
     assert!(matches!(statement_of(&bench, "left"), Edge::Known(_)));
     state_mut(&mut bench)
-        .fields_mut()
+        .fields
         .state_edge("left", Edge::Known(["nothing".into(), String::new()]));
     click(&mut bench, Pos2::new(1390.0, 990.0));
     bench.get_by_label("correct").click();
     bench.step();
     until(&mut bench, |bench| {
-        bench
-            .fields()
-            .answer()
-            .is_some_and(|answer| answer.is_err())
+        bench.fields.answer().is_some_and(|answer| answer.is_err())
     });
     bench.step();
     assert!(
@@ -139,7 +136,7 @@ fn warnings_name_what_the_view_offers() {
     for setting in &TEXTS {
         assert!(bench.query_by_label(setting.label).is_some(), "{setting:?}");
     }
-    let answer = state(&bench).fields().answer().unwrap().as_ref().unwrap();
+    let answer = state(&bench).fields.answer().unwrap().as_ref().unwrap();
     let gap = &TEXTS[3];
     let advice = format!("state the edge with “{}”", gap.label);
     let warnings = answer.preview.warnings.join("\n");
@@ -164,7 +161,7 @@ fn photographs(edge: Option<&[u8]>) -> Bench {
     }
     let loaded = include_bytes!("../../examples/gel_1.png");
     state_mut(&mut bench).open("gel_1.png", loaded);
-    until(&mut bench, |bench| bench.fields().answer().is_some());
+    until(&mut bench, |bench| bench.fields.answer().is_some());
     bench.step();
     let unit = &TEXTS[1];
     let asks = bench.query_all_by_label_contains(unit.label).count();
@@ -184,14 +181,14 @@ fn photographs(edge: Option<&[u8]>) -> Bench {
 fn two_photographs_and_an_edge_lead_to_force_and_stress() {
     let mut bench = photographs(Some(include_bytes!("../../examples/gel_edge.csv")));
     for edge in ["top", "bottom"] {
-        let fields = state_mut(&mut bench).fields_mut();
+        let fields = &mut state_mut(&mut bench).fields;
         fields.state_edge(edge, Edge::Free);
     }
     bench.get_by_label("correct").click();
     bench.step();
-    until(&mut bench, |bench| !bench.fields().is_busy());
+    until(&mut bench, |bench| !bench.fields.is_busy());
     bench.step();
-    let answer = state(&bench).fields().answer().unwrap().as_ref();
+    let answer = state(&bench).fields.answer().unwrap().as_ref();
     let answer = answer.unwrap();
     assert_eq!(answer.preview.photo.as_ref().unwrap().size, [420, 240]);
     let (frames, _) = answer.corrected.as_ref().unwrap();
@@ -222,7 +219,7 @@ fn the_edge_may_be_drawn_on_the_first_photograph() {
     bench.step();
     let [left, right, bottom, top] = [1.0, 16.0, 1.95, 9.95];
     let corners = [[left, top], [right, top], [right, bottom], [left, bottom]];
-    let view = state(&bench).fields().view().unwrap();
+    let view = state(&bench).fields.view().unwrap();
     // One corner too many is taken back.
     let clicks = corners[..3].iter().chain([&[18.0, 6.0]]);
     for corner in clicks {
@@ -235,9 +232,9 @@ fn the_edge_may_be_drawn_on_the_first_photograph() {
     }
     bench.get_by_label("use this edge").click();
     bench.step();
-    until(&mut bench, |bench| !bench.fields().is_busy());
+    until(&mut bench, |bench| !bench.fields.is_busy());
     bench.step();
-    let answer = state(&bench).fields().answer().unwrap().as_ref().unwrap();
+    let answer = state(&bench).fields.answer().unwrap().as_ref().unwrap();
     let Drawing::Mesh(figure) = &answer.preview.drawing else {
         panic!("a mesh is drawn");
     };

@@ -171,9 +171,9 @@ fn the_report_is_shown_after_a_run_with_contents_that_lead_to_its_headings() {
     bench.run_steps(2);
     bench.get_by_label("run").click();
     bench.step();
-    until(&mut bench, |bench| bench.studies().report().is_some());
+    until(&mut bench, |bench| bench.studies.report().is_some());
     bench.run_steps(60);
-    let report = state(&bench).studies().report().unwrap().as_ref().unwrap();
+    let report = state(&bench).studies.report().unwrap().as_ref().unwrap();
     let title = report.title.clone();
     let heading = report.blocks.iter().rev().find_map(|block| match block {
         Block::Heading(_, text) => Some(text.clone()),

@@ -135,7 +135,7 @@ fn every_guided_scene_is_solved_without_a_fault() {
             Shows::Sheet(scene) => assert_eq!(*state(&bench).table.scene(), scene(), "{label}"),
             Shows::MeasuredField => {
                 let corrected = |bench: &Workbench| {
-                    let answer = bench.fields().answer();
+                    let answer = bench.fields.answer();
                     answer.is_some_and(|answer| answer.as_ref().unwrap().corrected.is_some())
                 };
                 until(&mut bench, corrected);
@@ -167,7 +167,7 @@ fn dropped_files_find_their_view_and_bad_ones_are_told() {
     state_mut(&mut bench).open("noise.toml", &[0xff, 0xfe, 0x00]);
     state_mut(&mut bench).open("pull.csv", b"# test: uniaxial\n");
     bench.step();
-    assert_eq!(state(&bench).tab(), Tab::Material);
+    assert_eq!(state(&bench).tab, Tab::Material);
 }
 
 #[test]
@@ -176,13 +176,13 @@ fn a_dropped_file_that_nothing_reads_says_what_would_be() {
     for (name, content) in [("film.mp4", &b"\xff\xd8"[..]), ("notes.md", b"# notes")] {
         state_mut(&mut bench).open(name, content);
         bench.step();
-        let message = state(&bench).message();
+        let message = &state(&bench).message;
         assert!(
             message.contains(name) && message.contains("(.toml"),
             "{message}"
         );
-        assert_eq!(state(&bench).tab(), Tab::Sheet, "nothing else happens");
-        assert!(state(&bench).studies().files().is_empty());
+        assert_eq!(state(&bench).tab, Tab::Sheet, "nothing else happens");
+        assert!(state(&bench).studies.files().is_empty());
         assert!(bench.query_by_label_contains(name).is_some());
     }
 }
@@ -193,9 +193,9 @@ fn the_points_of_a_dropped_test_are_drawn_at_once() {
     let test = include_bytes!("../../materials/data/treloar_1944_uniaxial.csv");
     state_mut(&mut bench).open("treloar_1944_uniaxial.csv", test);
     bench.step();
-    until(&mut bench, |bench| bench.materials().seen().is_some());
+    until(&mut bench, |bench| bench.materials.seen().is_some());
     bench.run_steps(2);
-    let materials = state(&bench).materials();
+    let materials = &state(&bench).materials;
     assert!(materials.ranking().is_none(), "nothing was fitted");
     let lines = &materials.seen().unwrap().lines;
     assert_eq!(lines.len(), 1);
@@ -207,8 +207,8 @@ fn the_points_of_a_dropped_test_are_drawn_at_once() {
     );
     // A file that does not say what was measured is asked about at once too.
     state_mut(&mut bench).open("bare.csv", b"strain,stress\n0.1,0.01\n0.2,0.02\n0.3,0.03\n");
-    until(&mut bench, |bench| bench.materials().ranking().is_some());
-    assert!(state(&bench).materials().ranking().unwrap().is_err());
+    until(&mut bench, |bench| bench.materials.ranking().is_some());
+    assert!(state(&bench).materials.ranking().unwrap().is_err());
 }
 
 #[test]
@@ -220,13 +220,8 @@ fn a_dropped_test_is_fitted_and_the_sheet_is_made_of_it() {
     bench.step();
     bench.get_by_label("fit").click();
     bench.step();
-    until(&mut bench, |bench| bench.materials().ranking().is_some());
-    let ranking = state(&bench)
-        .materials()
-        .ranking()
-        .unwrap()
-        .as_ref()
-        .unwrap();
+    until(&mut bench, |bench| bench.materials.ranking().is_some());
+    let ranking = state(&bench).materials.ranking().unwrap().as_ref().unwrap();
     assert!(ranking.fits.len() > 5, "{}", ranking.fits.len());
     bench.step();
     bench.get_by_label("use it for the sheet").click();

@@ -19,15 +19,19 @@ const SHOWN_PERIOD: f64 = 2.0;
 
 /// A motion that is computed and played.
 pub struct Playing {
-    number: u64,
-    scene: Scene,
-    damping: f64,
+    /// Its number.
+    pub number: u64,
+    /// The scene that was let go.
+    pub scene: Scene,
+    /// The damping that it was let go with, in MPa·s.
+    pub damping: f64,
     next: [Option<MotionState>; 3],
     asked: [bool; 3],
     frames: [Vec<MovingFrame>; 3],
     faults: [Option<Fault>; 3],
     energy_error: [f64; 3],
-    duration: f64,
+    /// How long it lasts in s.
+    pub duration: f64,
     interval: f64,
     piece: f64,
     clock: f64,
@@ -81,26 +85,6 @@ impl Playing {
             slowness: SHOWN_PERIOD / period,
             running: true,
         })
-    }
-
-    /// Its number.
-    pub fn number(&self) -> u64 {
-        self.number
-    }
-
-    /// The scene that was let go.
-    pub fn scene(&self) -> &Scene {
-        &self.scene
-    }
-
-    /// The damping that it was let go with, in MPa·s.
-    pub fn damping(&self) -> f64 {
-        self.damping
-    }
-
-    /// How long it lasts in s.
-    pub fn duration(&self) -> f64 {
-        self.duration
     }
 
     /// The time that is shown in s.
@@ -279,9 +263,9 @@ mod tests {
             (step - playing.interval).abs() < 1e-6 * playing.interval
         }));
         assert!(playing.energy_error(Model::Springs) < 0.02);
-        let seconds = 0.5 * playing.duration() * playing.slowness;
+        let seconds = 0.5 * playing.duration * playing.slowness;
         assert!(playing.advance(seconds));
-        assert!((playing.clock() / playing.duration() - 0.5).abs() < 1e-9);
+        assert!((playing.clock() / playing.duration - 0.5).abs() < 1e-9);
         playing.advance(1.1 * seconds);
         assert_eq!(playing.clock(), 0.0);
         playing.running = false;
@@ -310,7 +294,7 @@ mod tests {
             .map(|pair| pair[1][0])
             .collect();
         let half = crossings[1] - crossings[0];
-        let expected = 0.5 * playing.duration() / PERIODS;
+        let expected = 0.5 * playing.duration / PERIODS;
         assert!((half / expected - 1.0).abs() < 0.15, "{half} {expected}");
     }
 

@@ -243,7 +243,7 @@ impl Table {
 
     /// What decides how the fields are drawn besides their results: not where the grip is, which moves in every frame.
     fn drawn_as(&self) -> (Look, usize, Option<u64>) {
-        let motion = self.moving.as_ref().map(Playing::number);
+        let motion = self.moving.as_ref().map(|playing| playing.number);
         (self.scene().look, self.sheets, motion)
     }
 

@@ -84,18 +84,24 @@ pub struct Workbench {
     springs_back: bool,
     lets_go: bool,
     sheets: Sheets,
-    tab: Tab,
-    materials: Materials,
-    fields: Fields,
-    studies: Studies,
+    /// The view that is shown.
+    pub tab: Tab,
+    /// Materials and fits.
+    pub materials: Materials,
+    /// Measured fields.
+    pub fields: Fields,
+    /// Studies of any kind.
+    pub studies: Studies,
     inbox: Inbox,
     guided: Option<usize>,
     shows_guide: bool,
     shows_controls: Option<bool>,
-    message: String,
-    grip_at: Option<egui::Pos2>,
-    /// Where some of the buttons stand in the last frame, by their words.
-    positions: BTreeMap<String, egui::Pos2>,
+    /// What the program has said last, as of a file that it has written.
+    pub message: String,
+    /// Where the grip is on the screen, in points.
+    pub grip_at: Option<egui::Pos2>,
+    /// Where the buttons stood in the last frame that a program may press: by their words, in points.
+    pub positions: BTreeMap<String, egui::Pos2>,
     measure: Option<Measure>,
 }
 
@@ -153,51 +159,6 @@ impl Workbench {
     /// What the frames took, where they are measured and all were drawn.
     pub fn measured(&self) -> Option<String> {
         self.measure.as_ref()?.report()
-    }
-
-    /// The view that is shown.
-    pub fn tab(&self) -> Tab {
-        self.tab
-    }
-
-    /// Where the grip is on the screen, in points.
-    pub fn grip_at(&self) -> Option<egui::Pos2> {
-        self.grip_at
-    }
-
-    /// What the program has said last, as of a file that it has written.
-    pub fn message(&self) -> &str {
-        &self.message
-    }
-
-    /// Where the buttons stand in the last frame that a program may press: by their words, in points.
-    pub fn positions(&self) -> &BTreeMap<String, egui::Pos2> {
-        &self.positions
-    }
-
-    /// Shows a view.
-    pub fn turn_to(&mut self, tab: Tab) {
-        self.tab = tab;
-    }
-
-    /// Measured fields.
-    pub fn fields(&self) -> &Fields {
-        &self.fields
-    }
-
-    /// The same, to say more of them.
-    pub fn fields_mut(&mut self) -> &mut Fields {
-        &mut self.fields
-    }
-
-    /// Studies of any kind.
-    pub fn studies(&self) -> &Studies {
-        &self.studies
-    }
-
-    /// Materials and fits.
-    pub fn materials(&self) -> &Materials {
-        &self.materials
     }
 
     /// Draws a frame.

@@ -68,12 +68,12 @@ impl Table {
         let Some(playing) = &self.moving else {
             return;
         };
-        let (then, now) = (playing.scene(), self.scene());
+        let (then, now) = (&playing.scene, self.scene());
         if !then.same_sheet(now) || then.grip != now.grip {
             self.moving = None;
         } else if then.look.models != now.look.models || motion::colour(then) != motion::colour(now)
         {
-            let damping = playing.damping();
+            let damping = playing.damping;
             self.moving = None;
             self.begin_motion(damping);
         }
@@ -225,7 +225,7 @@ mod tests {
             gesture: false,
         });
         assert_eq!(
-            table.moving().unwrap().number(),
+            table.moving().unwrap().number,
             2,
             "other colours are computed anew"
         );

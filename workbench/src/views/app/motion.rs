@@ -86,7 +86,7 @@ impl Workbench {
         };
         let (mut running, mut slowness) = (moving.running, moving.slowness);
         let (mut time, computed) = (1e3 * moving.clock(), 1e3 * moving.computed());
-        let (duration, complete) = (1e3 * moving.duration(), moving.is_complete());
+        let (duration, complete) = (1e3 * moving.duration, moving.is_complete());
         let faults: Vec<_> = Model::ALL
             .into_iter()
             .filter_map(|model| moving.fault(model).cloned())

@@ -12,7 +12,7 @@ impl Workbench {
     /// What may go out of the view that is shown, to choose from.
     pub(super) fn offered(&mut self, ui: &mut Ui) {
         #[cfg(target_arch = "wasm32")]
-        if self.tab() == Tab::Sheet && ui.button("copy a link to this sheet").clicked() {
+        if self.tab == Tab::Sheet && ui.button("copy a link to this sheet").clicked() {
             let link = crate::page::link(&self.table.scene().study());
             self.message = match link {
                 Some(link) => {
@@ -45,7 +45,7 @@ impl Workbench {
     }
 
     fn offers(&self) -> Vec<Offer> {
-        match self.tab() {
+        match self.tab {
             Tab::Sheet => self.sheet_offers(),
             Tab::Material => self.materials.offers(),
             Tab::Field => self.fields.offers(),
