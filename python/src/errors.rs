@@ -87,7 +87,7 @@ pub fn input(message: impl Into<String>, hint: impl Into<String>) -> Error {
 
 /// The same where the message says what to do.
 pub fn refused(message: impl Into<String>) -> Error {
-    Error::Input(vec![Diagnostic::error("", message)])
+    Diagnostic::error("", message).into()
 }
 
 /// The choice of a name.

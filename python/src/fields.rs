@@ -21,19 +21,15 @@ pub fn frozen<'py, T>(array: Bound<'py, T>) -> PyResult<Bound<'py, T>> {
     Ok(array)
 }
 
-/// Numbers, `width` a row, that Python cannot write into, nor allow itself to: what they are views of is frozen too.
-pub fn frozen_rows(
-    py: Python<'_>,
-    values: Vec<f64>,
-    width: usize,
-) -> PyResult<Bound<'_, PyArray2<f64>>> {
-    let count = values.len() / width;
-    frozen(frozen(PyArray1::from_vec(py, values))?.reshape([count, width])?)
+/// Vectors, one a row, that Python cannot write into, nor allow itself to: what they are views of is frozen too.
+pub fn frozen_vectors(py: Python<'_>, values: Vec<f64>) -> PyResult<Bound<'_, PyArray2<f64>>> {
+    let count = values.len() / 2;
+    frozen(frozen(PyArray1::from_vec(py, values))?.reshape([count, 2])?)
 }
 
 /// Places in mm, one a row; read-only.
 pub fn places<'py>(py: Python<'py>, points: &[[f64; 2]]) -> PyResult<Bound<'py, PyArray2<f64>>> {
-    frozen_rows(py, points.as_flattened().to_vec(), 2)
+    frozen_vectors(py, points.as_flattened().to_vec())
 }
 
 /// Cells of one kind: its VTK number, the numbers of the cells, and their points.

@@ -71,7 +71,7 @@ impl Options {
             array: self.array.clone(),
             grid: self.grid,
             ignored_columns: self.ignore_columns.clone(),
-            columns: columns.map_err(|fault| Error::Input(vec![fault]))?,
+            columns: columns?,
             encoding: encoding.transpose()?,
             downwards: either("y_axis", self.y_axis.as_deref(), ["down", "up"])?,
             deformed: either("places", self.places.as_deref(), ["frame", "rest"])?,

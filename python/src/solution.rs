@@ -16,7 +16,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::errors::{exception, refused};
-use crate::fields::{Arrays, arrays, frozen_rows, mesh_blocks, places, rows};
+use crate::fields::{Arrays, arrays, frozen_vectors, mesh_blocks, places, rows};
 use crate::running::caught;
 
 /// What a solution needs besides its states.
@@ -78,7 +78,7 @@ impl Solution {
         let states = solution.states.into_iter().zip(others);
         let states = states.map(
             |(state, ((((balance, force), energy), at_groups), multipliers))| {
-                let array = |values| Ok::<_, PyErr>(frozen_rows(py, values, 2)?.unbind());
+                let array = |values| Ok::<_, PyErr>(frozen_vectors(py, values)?.unbind());
                 Ok(State {
                     factor: state.factor,
                     displacement: array(state.displacement)?,

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, HashMap};
 use std::path::{Path, PathBuf};
 
-use gelbench::error::{Diagnostic, Error};
+use gelbench::error::Error;
 use gelbench::sweep::{
     self, BaseStudy, FittedParameters, Method, Points, Row, Run, Sampling, Setting, Shard, Share,
     SweepFolder, Values, Variable,
@@ -31,11 +31,10 @@ pub enum Varied {
 type Distribution = (String, bool, [f64; 2], String);
 
 fn variable(key: &str, values: &Varied) -> Result<Variable, Error> {
-    let variable = match values {
-        Varied::Text(text) => Variable::parse(&format!("{key}={text}")),
-        Varied::Listed(texts) => Variable::listed(key, texts),
-    };
-    variable.map_err(|fault| Error::Input(vec![fault]))
+    Ok(match values {
+        Varied::Text(text) => Variable::parse(&format!("{key}={text}"))?,
+        Varied::Listed(texts) => Variable::listed(key, texts)?,
+    })
 }
 
 /// The distributions among what is varied.
@@ -93,14 +92,13 @@ impl Sweep {
         allow_large: bool,
     ) -> PyResult<Self> {
         let planned = || -> Result<Self, Error> {
-            let one = |fault: Diagnostic| Error::Input(vec![fault]);
             let variables = vary.iter().map(|(key, values)| variable(key, values));
             let points = points.as_deref().map(Points::of_columns).transpose();
             let fitted = fit.map(|(name, text)| FittedParameters::parse(&name, &text));
             let sweep = sweep::Sweep {
                 variables: variables.collect::<Result<_, _>>()?,
-                points: points.map_err(one)?,
-                fitted: fitted.transpose().map_err(one)?,
+                points: points?,
+                fitted: fitted.transpose()?,
                 sampling: Sampling {
                     samples,
                     method: choice("method", method, &METHODS)?,

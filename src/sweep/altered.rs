@@ -116,10 +116,9 @@ impl BaseStudy {
 }
 
 fn no_place(key: &str, reason: String) -> Error {
-    let fault = Diagnostic::error(key, reason);
-    Error::Input(vec![fault.hint(
-        "a key's parts have dots between them; places in lists count from 0: load.stretches.0",
-    )])
+    let hint =
+        "a key's parts have dots between them; places in lists count from 0: load.stretches.0";
+    Diagnostic::error(key, reason).hint(hint).into()
 }
 
 /// A card whose parameters are set.
@@ -159,7 +158,7 @@ impl VariedCard {
         let known: Vec<&str> = self.card.parameters.iter().map(|entry| entry.key).collect();
         let message = format!("the card {} has no parameter `{parameter}`", self.card.name);
         let hint = suggestion(parameter, &known, "its parameters are");
-        Error::Input(vec![Diagnostic::error(key, message).hint(hint)])
+        Diagnostic::error(key, message).hint(hint).into()
     }
 
     /// Sets a parameter, by the name that a fit has for it; says whether the card has one of this name.

@@ -50,14 +50,9 @@ impl<T: Clone + PartialEq> History<T> {
         self.gesture = false;
     }
 
-    /// Whether there is something to take back.
-    pub fn can_undo(&self) -> bool {
-        !self.past.is_empty()
-    }
-
-    /// Whether something was taken back.
-    pub fn can_redo(&self) -> bool {
-        !self.future.is_empty()
+    /// Whether there is something to take back, and to take again.
+    pub fn steps(&self) -> [bool; 2] {
+        [!self.past.is_empty(), !self.future.is_empty()]
     }
 
     /// Takes the last change back.
@@ -92,10 +87,10 @@ mod tests {
         history.undo();
         assert_eq!(*history.now(), 5);
         history.undo();
-        assert_eq!((*history.now(), history.can_undo()), (0, false));
+        assert_eq!((*history.now(), history.steps()), (0, [false, true]));
         history.redo();
         history.redo();
-        assert_eq!((*history.now(), history.can_redo()), (9, false));
+        assert_eq!((*history.now(), history.steps()), (9, [true, false]));
     }
 
     #[test]
@@ -104,7 +99,7 @@ mod tests {
         history.change(1, false);
         history.undo();
         history.change(2, false);
-        assert!(!history.can_redo());
+        assert_eq!(history.steps(), [true, false]);
         history.undo();
         assert_eq!(*history.now(), 0);
     }

@@ -187,7 +187,7 @@ impl Table {
 
     /// Whether there is something to take back, and to take again.
     pub fn steps(&self) -> [bool; 2] {
-        [self.scene.can_undo(), self.scene.can_redo()]
+        self.scene.steps()
     }
 
     /// Cards of the user's that are known.

@@ -136,15 +136,12 @@ fn attribute(array: &Array) -> Attribute {
     let values = &array.values;
     let (elem, data) = match array.components {
         Components::Scalar => {
-            let lookup_table = None;
-            let num_comp = 1;
-            (
-                ElementType::Scalars {
-                    num_comp,
-                    lookup_table,
-                },
-                values.clone(),
-            )
+            let (num_comp, lookup_table) = (1, None);
+            let scalars = ElementType::Scalars {
+                num_comp,
+                lookup_table,
+            };
+            (scalars, values.clone())
         }
         Components::Vector => {
             let planar = values.chunks_exact(2);

@@ -89,7 +89,7 @@ fn read_fields(section: &Section) -> ShownFields {
     let dimension = fields
         .first()
         .map_or(Dimension::Stress, |field| field.dimension());
-    let (word, range) = section.quantities_or(&["automatic"], "range", dimension, Bound::Any);
+    let (word, range) = section.quantities_or(&["automatic"], "range", dimension);
     let range = match range[..] {
         _ if word.is_some() => None,
         [low, high] if low < high => Some([low, high]),
@@ -113,7 +113,7 @@ fn read_fields(section: &Section) -> ShownFields {
 
 fn read_shown(section: &Section, key: &'static str, dimension: Dimension, path: &[f64]) -> Shown {
     let words = [("last", Shown::Last), ("all", Shown::All)];
-    let (word, wanted) = section.quantities_or(&["last", "all"], key, dimension, Bound::Any);
+    let (word, wanted) = section.quantities_or(&["last", "all"], key, dimension);
     if let Some((_, shown)) = words.into_iter().find(|(name, _)| Some(*name) == word) {
         return shown;
     }

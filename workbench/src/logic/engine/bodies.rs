@@ -62,7 +62,8 @@ pub struct Body {
     pub mesh: Mesh,
     /// ux, uy of node after node in mm.
     pub displacement: Vec<f64>,
-    grip: Grip,
+    /// Where the grip was in the last state.
+    pub grip: Grip,
     pub(super) energy: Energy,
     quick: Option<Quick>,
 }
@@ -288,11 +289,6 @@ impl Body {
             Energy::Springs(springs) => Some(springs),
             Energy::Sheet(_) => None,
         }
-    }
-
-    /// Where the grip was in the last state.
-    pub fn grip(&self) -> Grip {
-        self.grip
     }
 
     /// Force and moment on the right grip in N and N mm; `along` is the force along X where it is known better than the

@@ -69,7 +69,7 @@ impl Loading for GripPath<'_> {
 /// [`Error::Solve`] where neither leads there.
 pub fn reach(body: &Body, sheet: &Sheet, grip: Grip) -> Result<Vec<f64>, Error> {
     let rest = vec![0.0; body.displacement.len()];
-    let near = solve_path(body, sheet, body.grip(), &body.displacement, grip, &[1.0]);
+    let near = solve_path(body, sheet, body.grip, &body.displacement, grip, &[1.0]);
     near.or_else(|_| solve_path(body, sheet, Grip::default(), &rest, grip, &FROM_REST))
 }
 

@@ -136,18 +136,17 @@ impl<'a> Section<'a> {
         words: &[&'b str],
         key: &'static str,
         dimension: Dimension,
-        bound: Bound,
     ) -> (Option<&'b str>, Vec<f64>) {
         let names = words.iter().map(|word| (*word).to_owned());
         self.record_key(key, Some(Takes::Choice(names.collect())));
         let is_text = |value: &Value<'a>| matches!(value.get_ref(), DeValue::String(_));
         match self.value(key).filter(is_text) {
             Some(_) => {
-                self.record_key(key, Some(Takes::Quantities(dimension, bound)));
+                self.record_key(key, Some(Takes::Quantities(dimension, Bound::Any)));
                 let choices: Vec<_> = words.iter().map(|word| (*word, *word)).collect();
                 (self.choice(key, &choices), Vec::new())
             }
-            None => (None, self.quantities(key, dimension, bound)),
+            None => (None, self.quantities(key, dimension, Bound::Any)),
         }
     }
 

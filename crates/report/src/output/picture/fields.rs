@@ -33,7 +33,7 @@ pub(super) struct Plan {
 impl Plan {
     /// Width and height in points.
     pub fn size(&self) -> Size {
-        (self.layout.width() as u32, self.bar.bottom as u32)
+        (self.layout.width as u32, self.bar.bottom as u32)
     }
 }
 
@@ -61,7 +61,7 @@ impl FieldFigure {
         let least = names + 2.0 * GAP + rest;
         let layout = Layout::of(look, &self.title, least, positions);
         let has_rest = !self.panels[0].surface.rest.is_empty();
-        let right = layout.width() - EDGE;
+        let right = layout.width - EDGE;
         let mut bottom = layout.bottom(panels);
         let above = [layout.right(), layout.top + 0.5 * LABEL_HEIGHT];
         let rest = if layout.left + least <= layout.right() {
@@ -94,7 +94,7 @@ impl FieldFigure {
         layout.draw(&mut sheet, &self.title, self.panels.len());
         for (index, panel) in self.panels.iter().enumerate() {
             let position = [layout.left, layout.panel_top(index) + 0.5 * LABEL_HEIGHT];
-            let room = layout.width() - EDGE - layout.left;
+            let room = layout.width - EDGE - layout.left;
             let label = short(&panel.label, room, look);
             sheet.write(label, position, Align::Left, look.name());
         }

@@ -35,7 +35,8 @@ pub(super) struct Layout {
     above: f64,
     x: Ticks,
     y: Ticks,
-    width: f64,
+    /// The whole picture's width.
+    pub width: f64,
 }
 
 impl Layout {
@@ -86,11 +87,6 @@ impl Layout {
     pub fn without_labels(self) -> Self {
         let above = NO_LABEL_HEIGHT;
         Self { above, ..self }
-    }
-
-    /// The whole picture's width.
-    pub fn width(&self) -> f64 {
-        self.width
     }
 
     fn size(&self, axis: usize) -> f64 {

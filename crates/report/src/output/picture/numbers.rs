@@ -95,9 +95,7 @@ impl Ticks {
             numbers,
         }
     }
-}
 
-impl Ticks {
     /// As many ticks of a horizontal axis of a length as have room beside one another; of the three fewest only the ends.
     pub fn fitting(limits: [f64; 2], scale: Scale, length: f64, letters: Letters) -> Self {
         const APART: f64 = 10.0;
@@ -344,7 +342,7 @@ mod tests {
                 let low = 0.37 * f64::from(low) - 7.3;
                 let range = [low, low + 0.0173 * f64::from(width * width)];
                 for most in 4..9 {
-                    let count = labels_of(range, scale, most);
+                    let count = Ticks::within(range, scale, most).at.len();
                     assert!(
                         (3..=most.max(5)).contains(&count),
                         "{scale:?} {range:?} {most}"
@@ -352,9 +350,5 @@ mod tests {
                 }
             }
         }
-    }
-
-    fn labels_of(range: [f64; 2], scale: Scale, most: usize) -> usize {
-        Ticks::within(range, scale, most).at.len()
     }
 }

@@ -47,7 +47,7 @@ impl MeshFigure {
         let look = layout.look;
         let mut sheet = Sheet::new(look);
         layout.draw(&mut sheet, &self.title, 1);
-        let right = layout.width() - EDGE;
+        let right = layout.width - EDGE;
         let [mut x, mut y] = [layout.left, layout.bottom(1) + GAP + 0.5 * ROW_HEIGHT];
         for (group, index) in self.groups.iter().zip(0..) {
             let width = SAMPLE + look.name().width(&group.name);
@@ -63,10 +63,7 @@ impl MeshFigure {
         } else {
             0.5 * ROW_HEIGHT
         };
-        (
-            (layout.width() as u32, (y + rows + EDGE) as u32),
-            sheet.marks,
-        )
+        ((layout.width as u32, (y + rows + EDGE) as u32), sheet.marks)
     }
 
     fn paint(&self, painter: &mut Painter, layout: &Layout) {
