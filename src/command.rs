@@ -331,14 +331,14 @@ fn run_study(path: &Path, folder: Option<PathBuf>, budget: Budget) -> Outcome {
     let counted = ready.progress_steps > 0;
     let with_report = ready.output.report;
     let report = |what: &str| {
-        progress.tell(what);
+        progress.report(what);
         if counted {
             progress.advance();
         }
     };
     let results = ready.compute(studies::Progress::to(&report).kept_by(&journal))?;
     let (mut results_folder, fault) = journal.close();
-    progress.tell("files");
+    progress.report("files");
     let warnings = output::write(&results, with_report, &mut results_folder)?;
     drop(progress);
     warn(&warnings);

@@ -181,12 +181,12 @@ pub fn kind_of(file: &str, text: &str) -> Result<Option<&'static Kind>, Error> {
                 None
             }
             None if faults.none() => root.choice("kind", &kinds),
-            // It is no text, which is told already.
+            // It is no text, which is reported already.
             None => None,
         }
     };
     match choice {
-        // Other faults are reported when the whole study is read.
+        // Other faults are reported when the study is read completely.
         Some(kind) => Ok(kind),
         None => faults.finish().map(|_| None),
     }

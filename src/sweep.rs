@@ -105,7 +105,7 @@ impl Sweep {
                 let texts = points.rows().iter().map(|row| &row[position]);
                 let texts = texts.filter(|value| value.value().is_none());
                 let mut known = HashSet::new();
-                let new = texts.filter(|value| known.insert(value.words()));
+                let new = texts.filter(|value| known.insert(value.plain_text()));
                 new.for_each(|value| read(&key, value));
             }
         }
@@ -144,7 +144,7 @@ impl Sweep {
         done.into_par_iter().map(row).collect()
     }
 
-    /// Reports faults before anything is computed, the same ones each time. In a whole sweep a few drawn runs may
+    /// Reports faults before anything is computed, the same ones each time. In a complete sweep a few drawn runs may
     /// have inadmissible values, such as parameters that no law admits: such a run is reported in its row.
     fn check<'a>(&self, runs: impl Iterator<Item = &'a Run>) -> Result<(), Error> {
         /// One in so many drawn runs may be inadmissible.

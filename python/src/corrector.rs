@@ -50,7 +50,7 @@ fn sparse_rows(name: &str, columns: usize, matrix: &Csr<'_>) -> PyResult<SparseR
     Ok(rows)
 }
 
-/// What Python says of a group of conditions; a callable linearises them: of a field, values and the Jacobian by rows.
+/// A group of conditions from Python. The callable `linearise` returns values and the Jacobian by rows at a field.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub struct Given {

@@ -85,7 +85,7 @@ pub fn input(message: impl Into<String>, hint: impl Into<String>) -> Error {
     Error::input(message, hint)
 }
 
-/// The same where the message says what to do.
+/// One fault whose message contains the remedy.
 pub fn refused(message: impl Into<String>) -> Error {
     Diagnostic::error("", message).into()
 }

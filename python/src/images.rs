@@ -117,7 +117,7 @@ pub fn track(
             budget: budget(allow_large),
         };
         let start = Instant::now();
-        let tracked = with_files(in_memory, || request.follow(&|what| watch.tell(what)))?;
+        let tracked = with_files(in_memory, || request.follow(&|what| watch.report(what)))?;
         let seconds = start.elapsed().as_secs_f64();
         let tracking = results(&tracked, "track".to_owned(), seconds);
         let file = files.into_iter().next().unwrap_or_default();

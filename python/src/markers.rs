@@ -188,13 +188,13 @@ pub fn correct(
         let start = Instant::now();
         let mut study = with_files(options.in_memory, || {
             if options.refine {
-                MarkerStudy::prepare_refined(card, request, &|what| watch.tell(what))
+                MarkerStudy::prepare_refined(card, request, &|what| watch.report(what))
             } else {
-                MarkerStudy::prepare_with(card, request, &|what| watch.tell(what))
+                MarkerStudy::prepare_with(card, request, &|what| watch.report(what))
             }
         })?;
-        let tell = |frame: &Frame| watch.tell(&format!("frame {}", frame.number));
-        let estimates = study.estimate(&tell)?;
+        let report = |frame: &Frame| watch.report(&format!("frame {}", frame.number));
+        let estimates = study.estimate(&report)?;
         let seconds = start.elapsed().as_secs_f64();
         let pictures = Pictures::default();
         let results = written::results(&pictures, &study, &estimates, name, known, seconds);

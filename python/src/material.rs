@@ -141,7 +141,7 @@ pub fn watched(card: Card, watch: &Arc<Watch>) -> Card {
     }
 }
 
-/// The text of a card without how it was fitted, and without comments, which say that too.
+/// The text of a card without the record of its fit and without comments, which refer to it.
 fn without_fit(text: &str) -> String {
     let mut kept = true;
     let of_others = text.lines().filter(|line| {

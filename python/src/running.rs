@@ -43,7 +43,7 @@ impl Watch {
     }
 
     /// Calls the progress callback.
-    pub fn tell(&self, what: &str) {
+    pub fn report(&self, what: &str) {
         self.check();
         let Some(callback) = &self.progress else {
             return;

@@ -57,7 +57,7 @@ pub fn run_sheet(
         let card = watched(material.in_study(&read.content.card), watch);
         read.content = read.content.with_card(card);
         let (kind, name) = sheet_kind(&read.content);
-        let progress = |what: &str| watch.tell(what);
+        let progress = |what: &str| watch.report(what);
         let ready = specimen::ready(kind, name.into(), &study, read);
         let results = ready.compute(Progress::to(&progress))?;
         Ok(Results::new(results, name.into()))
@@ -73,7 +73,7 @@ pub fn check_sheet(
     files: Files,
     mesh: Option<&GivenMesh>,
 ) -> PyResult<()> {
-    // Whether a study is too large is said of the models that are solved.
+    // Whether a study is too large is checked for the models that are solved.
     let read = py.detach(|| read_sheet(study, files, mesh, true));
     raised(py, read.map(drop))
 }
@@ -208,9 +208,9 @@ pub fn solve_sheet(
         };
         let read = read.with_card(watched(card, watch));
         check_memory(&*read.problem.law, "a single model in Python")?;
-        let tell = |what: &str| watch.tell(what);
+        let report = |what: &str| watch.report(what);
         let start = Instant::now();
-        let solved = specimen::one_model(&read, kind, Progress::to(&tell))?;
+        let solved = specimen::one_model(&read, kind, Progress::to(&report))?;
         sheet.took = start.elapsed();
         let groups = read.groups().into_iter().map(str::to_owned).collect();
         Ok((solved, sheet, groups))
@@ -247,8 +247,8 @@ pub fn run(
     run_watched(py, progress, |watch| {
         let ready = ready(&path, allow_large, text, files)?;
         let (folder, with_report) = (ready.output.folder.clone(), ready.output.report);
-        let tell = |what: &str| watch.tell(what);
-        let results = ready.compute(Progress::to(&tell))?;
+        let report = |what: &str| watch.report(what);
+        let results = ready.compute(Progress::to(&report))?;
         Ok(Results {
             folder,
             with_report,

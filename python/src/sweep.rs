@@ -146,7 +146,7 @@ impl Sweep {
     ) -> PyResult<SweepTable> {
         run_watched(py, progress, |watch| {
             let share = share(part, join)?;
-            let ended = |number: usize| watch.tell(&format!("run {number}"));
+            let ended = |number: usize| watch.report(&format!("run {number}"));
             let attend = || watch.check();
             let mut table = SweepTable::of(&self.sweep, Vec::new());
             let Some(folder) = folder else {
@@ -218,7 +218,10 @@ fn values<'py>(py: Python<'py>, settings: &[&Setting]) -> PyResult<Bound<'py, Py
     match numbers {
         Some(numbers) => Ok(frozen(PyArray1::from_vec(py, numbers))?.into_any()),
         None => {
-            let words: Vec<String> = settings.iter().map(|setting| setting.words()).collect();
+            let words: Vec<String> = settings
+                .iter()
+                .map(|setting| setting.plain_text())
+                .collect();
             Ok(words.into_pyobject(py)?.into_any())
         }
     }

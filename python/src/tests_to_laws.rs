@@ -69,11 +69,11 @@ pub fn fit(
         };
         let fit = match law {
             Some(name) => {
-                watch.tell(&name);
+                watch.report(&name);
                 memory(history)?.fit(named(&name)?, &tests_read, &settings)?
             }
             None => {
-                watch.tell("all laws");
+                watch.report("all laws");
                 let (fits, _) = calibration::rank(&tests_read, &settings);
                 calibration::best(fits)
                     .ok_or_else(|| input("no law could be fitted", "look at the data"))?
@@ -151,7 +151,7 @@ pub fn identify(
             ],
             argument: chosen("damping_over", damping_over, &Argument::NAMES)?,
         };
-        let identification = identified(&read, settings, &|what| watch.tell(what))?;
+        let identification = identified(&read, settings, &|what| watch.report(what))?;
         let json = identification_json(&identification, &read, &name).to_string();
         let picture = drawn(&identification_picture(&identification, &read))?;
         Ok((json, law_text(&identification, &read, &name), picture))

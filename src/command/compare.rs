@@ -12,7 +12,7 @@ use doubts::doubts;
 
 use super::interrupt;
 use super::large::Large;
-use super::progress::{Progress, tell_files};
+use super::progress::{Progress, report_files};
 use super::terminal::{Outcome, Printed, print, print_report, warn};
 use crate::kinds;
 use gelbench_base::error::{Diagnostic, Error};
@@ -61,7 +61,7 @@ pub struct Options {
     pub printed: Printed,
 }
 
-/// A stretch beyond it that the study does not reach was meant in percent.
+/// A larger stretch that the study does not reach was intended in percent.
 const PERCENTAGE: f64 = 5.0;
 
 /// What is compared, before and after it is computed.
@@ -110,7 +110,7 @@ pub fn run(options: Options) -> Outcome {
             &options.field,
             &mut results,
         )?);
-        tell_files(&results.finish()?);
+        report_files(&results.finish()?);
         print(&format!("report: {}\n", folder.join("report.md").display()))?;
     }
     Ok(u8::from(!doubts.is_empty()))
@@ -121,7 +121,7 @@ fn compute(options: &Options) -> Result<Comparison, Error> {
     let path = &options.study;
     let text = sections::read_text(path)?;
     let shown = Progress::of(0);
-    let report = |what: &str| shown.tell(what);
+    let report = |what: &str| shown.report(what);
     let progress = studies::Progress::to(&report);
     let read = kinds::read_sheet(path, &text, options.large.budget())?;
     warn(&read.warnings);

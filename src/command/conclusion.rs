@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use super::progress::tell_files;
+use super::progress::report_files;
 use super::terminal;
-use super::terminal::{complain_of_end, print, print_report, warn_words};
+use super::terminal::{complain_of_end, print, print_report, warn_texts};
 use gelbench_base::error::Error;
 use gelbench_report::output::ResultFolder;
 use gelbench_report::results::{Check, End, Outcome, Results};
@@ -16,7 +16,7 @@ const NO_SOLUTION: u8 = 3;
 pub fn conclude(results: &[Results], words: &str) -> terminal::Outcome {
     print(words)?;
     let outcomes = || results.iter().map(|results| &results.outcome);
-    warn_words(outcomes().flat_map(Outcome::warnings));
+    warn_texts(outcomes().flat_map(Outcome::warnings));
     let ends = outcomes().filter(|outcome| !outcome.checks.iter().any(Check::is_end));
     let ends: Vec<&End> = ends.flat_map(|outcome| &outcome.ends).collect();
     ends.iter().for_each(|end| complain_of_end(end));
@@ -40,7 +40,7 @@ pub fn finish(folder: ResultFolder, results: Results) -> terminal::Outcome {
 pub fn moved_into_place(folder: ResultFolder, results: &Results) -> Result<String, Error> {
     let path = folder.path().to_owned();
     let files = folder.finish()?;
-    tell_files(&files);
+    report_files(&files);
     Ok(printed(results, files.len(), &path))
 }
 

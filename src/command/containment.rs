@@ -8,17 +8,17 @@ use std::panic::{self, AssertUnwindSafe, PanicHookInfo};
 pub const EXIT_CODE: u8 = 70;
 
 /// Sources whose panics are caught where they are called: the reader of VTK's legacy files panics on damaged ones, which is
-/// told as a fault of the file, and a picture that cannot be drawn is told as a warning.
+/// reported as a fault of the file, and a picture that cannot be drawn is reported as a warning.
 const CAUGHT: [&str; 4] = ["vtkio", "plotters", "tiny-skia", "output/picture"];
 
 /// Performs work and returns its exit code, or [`EXIT_CODE`] where it panics. What it was writing is taken away by then: files
 /// are written aside first.
 pub fn contained(work: impl FnOnce() -> u8) -> u8 {
-    panic::set_hook(Box::new(tell));
+    panic::set_hook(Box::new(report));
     panic::catch_unwind(AssertUnwindSafe(work)).unwrap_or(EXIT_CODE)
 }
 
-fn tell(fault: &PanicHookInfo) {
+fn report(fault: &PanicHookInfo) {
     let position = fault.location();
     if position.is_some_and(|position| CAUGHT.iter().any(|part| position.file().contains(part))) {
         return;

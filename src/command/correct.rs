@@ -67,7 +67,7 @@ fn prepared(options: Options) -> Result<MarkerStudy, Error> {
     let refined = options.refine;
     let request = request(options)?;
     let progress = Progress::of(0);
-    let watch = |action: &str| progress.tell(action);
+    let watch = |action: &str| progress.report(action);
     if !refined {
         return MarkerStudy::prepare(request, &watch);
     }

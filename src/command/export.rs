@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 
 use super::choice::one_of;
 use super::large::Large;
-use super::terminal::{Outcome, print, save, warn, warn_words};
+use super::terminal::{Outcome, print, save, warn, warn_texts};
 use crate::kinds;
 use gelbench_base::error::Error;
 use gelbench_mechanics::material::Code;
@@ -111,7 +111,7 @@ pub fn run(options: &Options) -> Outcome {
     };
     output::refuse_inputs(&target, &[path])?;
     save(&target, written.text.as_bytes())?;
-    warn_words(written.remarks);
+    warn_texts(written.remarks);
     let name = options.target.name();
     print(&format!("{} for {name}\n", target.display()))?;
     Ok(0)

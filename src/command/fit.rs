@@ -9,7 +9,7 @@ use serde_json::Value;
 use super::choice::one_of;
 use super::parameter_bounds::{ParameterBounds, bounds};
 use super::pictures::StyleOptions;
-use super::progress::{Progress, tell_files};
+use super::progress::{Progress, report_files};
 use super::terminal::{Outcome, Printed, print, print_report, together, warn};
 use super::test_reading::{ReadingArguments, read_tests};
 use super::{fit_message, interrupt};
@@ -85,7 +85,7 @@ pub fn fit(arguments: FitArguments) -> Outcome {
     let terms = arguments.relaxation.as_deref().map(terms).transpose()?;
     let memory = memory(terms, arguments.softening);
     if memory != Memory::None {
-        // What relaxes or softens is the whole record.
+        // Relaxation and softening need the complete record.
         reading.entry("cycle".into()).or_insert("all".into());
     }
     if memory != Memory::Softening {
@@ -188,15 +188,15 @@ fn chosen_fit(
     let progress = Progress::of(0);
     match (law, &base) {
         (_, Some(card)) => {
-            progress.tell(&card.name);
+            progress.report(&card.name);
             calibration::fit_softening(Base::Card(card), tests, settings)
         }
         (Some(law), _) => {
-            progress.tell(law.name);
+            progress.report(law.name);
             memory.fit(law, tests, settings)
         }
         _ => {
-            progress.tell("all laws");
+            progress.report("all laws");
             let (fits, reasons) = calibration::rank(tests, settings);
             print(&fit_message::ranking(&fits, &reasons))?;
             let criterion = Criterion::of(&fits);
@@ -259,7 +259,7 @@ impl Written<'_> {
         let figures = fit_json(self.fit, self.tests);
         let picture = fit_picture(self.fit, self.tests);
         let warning = add_law(&mut results, stem, &text, &figures, (&picture, &self.style))?;
-        tell_files(&results.finish()?);
+        report_files(&results.finish()?);
         Ok(warning)
     }
 }

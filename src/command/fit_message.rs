@@ -46,7 +46,7 @@ pub fn fit(fit: &Fit, tests: &[TestData]) -> String {
     text
 }
 
-/// What the homogeneous reading of a mounted sheet says, by how much it is wrong, and what another state at rest would.
+/// The parameters that a homogeneous reading of a mounted sheet gives, its error, and the parameters with another state at rest.
 fn mounted(fit: &Fit) -> String {
     let mut text = String::new();
     if let Some(mounted) = &fit.mounted {
@@ -227,7 +227,7 @@ fn correlation(fit: &Fit) -> String {
     indented(table)
 }
 
-/// A table as a part of what is said of one law.
+/// A table below the lines of one law.
 fn indented<T>(table: Table<T>) -> String {
     textwrap::indent(&table.block().plain(), "  ")
 }

@@ -9,7 +9,7 @@ use super::fit_message::values;
 use super::interrupt;
 use super::parameter_bounds::ParameterBounds;
 use super::pictures::StyleOptions;
-use super::progress::tell_files;
+use super::progress::report_files;
 use super::terminal::{Outcome, Printed, print, print_report, warn};
 use super::test_reading::{ReadingArguments, read_tests};
 use gelbench_base::error::Error;
@@ -142,7 +142,7 @@ fn write(
     results.add(&format!("{name}.json"), text.as_bytes())?;
     let picture = group_picture(groups);
     let warning = write_picture(&mut results, name, &picture, style)?;
-    tell_files(&results.finish()?);
+    report_files(&results.finish()?);
     warn(warning.as_slice());
     Ok(())
 }

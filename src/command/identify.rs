@@ -11,8 +11,8 @@ use super::fit::add_law;
 use super::interrupt;
 use super::large::Large;
 use super::pictures::StyleOptions;
-use super::progress::{Progress, tell_files};
-use super::terminal::{Outcome, Printed, print, print_report, save, warn, warn_words};
+use super::progress::{Progress, report_files};
+use super::terminal::{Outcome, Printed, print, print_report, save, warn, warn_texts};
 use gelbench_base::budget::{Budget, Need};
 use gelbench_base::error::Error;
 use gelbench_base::units::number;
@@ -119,8 +119,8 @@ pub fn run(options: Options) -> Outcome {
     interrupt::guard(&results);
     warn(results.replaces().as_slice());
     let progress = Progress::of(0);
-    let identification = identify(&recording, settings, &|what| progress.tell(what))?;
-    progress.tell("files");
+    let identification = identify(&recording, settings, &|what| progress.report(what))?;
+    progress.report("files");
     let json = identification_json(&identification, &recording, &file_name(&path));
     let law = law_text(&identification, &recording, &file_name(&path));
     let picture = identification_picture(&identification, &recording);
@@ -133,11 +133,11 @@ pub fn run(options: Options) -> Outcome {
     )?;
     let files = results.finish()?;
     drop(progress);
-    tell_files(&files);
+    report_files(&files);
     print_report(|| json)?;
     warn(warnings.as_slice());
     let doubts = identification.verdict.doubts.iter();
-    warn_words(doubts.chain(&identification.warnings));
+    warn_texts(doubts.chain(&identification.warnings));
     print(&format!(
         "{}written: {} with .png and .json\n",
         message(&identification, &recording, &path),

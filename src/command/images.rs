@@ -115,10 +115,10 @@ pub fn track(options: TrackOptions) -> Outcome {
     };
     let start = Instant::now();
     let tracked = request.follow(&|what| {
-        progress.tell(what);
+        progress.report(what);
         progress.advance();
     })?;
-    progress.tell("files");
+    progress.report("files");
     warn(&tracked.warnings);
     let results = results(
         &tracked,

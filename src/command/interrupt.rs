@@ -4,7 +4,7 @@ use std::io::Write;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use gelbench_base::document::inputs;
-use gelbench_report::output::{self, Left, ResultFolder, Unfinished};
+use gelbench_report::output::{self, Remains, ResultFolder, Unfinished};
 
 /// The exit code of a command that was interrupted: 128 and the number of the signal.
 const EXIT_CODE: i32 = 130;
@@ -18,14 +18,14 @@ pub fn attend() {
         let unfinished = UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner);
         // Held until the end: what was taken away is not written again meanwhile.
         let broken_off = unfinished.as_ref().map(|folder| folder.break_off());
-        let remains = match broken_off.as_ref().map(|run| run.left) {
-            None | Some(Left::Nothing) => {
+        let remains = match broken_off.as_ref().map(|run| run.remains) {
+            None | Some(Remains::Nothing) => {
                 "nothing of this run is kept; results of earlier runs are unchanged"
             }
-            Some(Left::Parts) => {
+            Some(Remains::Parts) => {
                 "the same command continues from here; results of earlier runs are unchanged"
             }
-            Some(Left::Results) => "the results of this run are complete",
+            Some(Remains::Results) => "the results of this run are complete",
         };
         let _ = writeln!(std::io::stderr(), "interrupted: {remains}");
         std::process::exit(EXIT_CODE);

@@ -55,7 +55,7 @@ impl FolderJournal {
         }
     }
 
-    /// What deserves to be told of a run that goes on.
+    /// The warning that a run goes on from an earlier one.
     pub fn warning(&self) -> Option<Diagnostic> {
         let message = format!(
             "the run continues from {} equilibria that it had found before it was interrupted; the times cover only the rest",

@@ -11,7 +11,7 @@ use gelbench_base::error::{Diagnostic, Severity};
 use gelbench_mechanics::material::Card;
 use gelbench_report::results::properties;
 
-/// Columns of a finding where no terminal says how many it has.
+/// Columns of a finding where no terminal states how many it has.
 const USUAL_COLUMNS: usize = 80;
 
 /// A finding with the lines of the file that it is about.
@@ -49,7 +49,7 @@ pub fn diagnostic(finding: &Diagnostic, coloured: bool, columns: Option<usize>) 
     let mut text = String::new();
     let handler = GraphicalReportHandler::new_themed(theme)
         .with_width(columns.unwrap_or(USUAL_COLUMNS))
-        // Paths and options stay whole.
+        // Paths and options are not broken.
         .with_word_separator(WordSeparator::AsciiSpace)
         .with_word_splitter(WordSplitter::NoHyphenation)
         .with_break_words(false)

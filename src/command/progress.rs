@@ -42,7 +42,7 @@ fn is_shown(shown: Shown) -> bool {
 }
 
 /// Names the files that were written, where every step is shown.
-pub fn tell_files(files: &[PathBuf]) {
+pub fn report_files(files: &[PathBuf]) {
     if is_shown(Shown::EveryStep) {
         let line = |file: &PathBuf| format!("gelbench: written: {}\n", file.display());
         let lines: String = files.iter().map(line).collect();
@@ -79,7 +79,7 @@ impl Progress {
     }
 
     /// Says what is being computed.
-    pub fn tell(&self, what: &str) {
+    pub fn report(&self, what: &str) {
         match self {
             Self::Quiet => {}
             Self::Bar(bar) => bar.set_message(what.to_owned()),
@@ -227,7 +227,7 @@ mod tests {
         let page = Page::default();
         let between = Duration::from_millis(20);
         let progress = Progress::Lines(Lines::new(3, between, page.clone()));
-        progress.tell("corrector, 50 % stretch");
+        progress.report("corrector, 50 % stretch");
         progress.advance();
         std::thread::sleep(10 * between);
         drop(progress);

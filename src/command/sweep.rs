@@ -7,8 +7,8 @@ use clap::{Args, ValueEnum};
 use super::conclusion::open_page;
 use super::interrupt;
 use super::large::Large;
-use super::progress::{Progress, tell_files};
-use super::terminal::{Outcome, Printed, print, print_report, warn, warn_words};
+use super::progress::{Progress, report_files};
+use super::terminal::{Outcome, Printed, print, print_report, warn, warn_texts};
 use crate::sweep::{
     self, BaseStudy, FittedParameters, Method, Points, Sampling, Shard, Share, Sweep, SweepFolder,
     Variable,
@@ -109,9 +109,9 @@ pub fn run(options: Options) -> Outcome {
     interrupt::guard(folder.results());
     warn(folder.replaces().as_slice());
     let progress = Progress::of(folder.count() as u64);
-    progress.tell("studies of all runs, read and checked before the first");
+    progress.report("studies of all runs, read and checked before the first");
     let ended = |number: usize| {
-        progress.tell(&format!("run {number}"));
+        progress.report(&format!("run {number}"));
         progress.advance();
     };
     let rows = folder.rows(&ended, &|| ())?;
@@ -119,8 +119,8 @@ pub fn run(options: Options) -> Outcome {
     let position = folder.results().path().to_owned();
     let (files, warnings) = folder.finish(&rows)?;
     warn(&warnings);
-    warn_words(sweep::cautions(&rows));
-    tell_files(&files);
+    warn_texts(sweep::cautions(&rows));
+    report_files(&files);
     let keys = sweep.keys();
     print_report(|| sweep::json(&keys, &rows))?;
     let failed = rows.iter().filter(|row| !row.fault.is_empty()).count();

@@ -72,7 +72,7 @@ fn wrapped(text: &str, columns: Option<usize>) -> String {
     let of_line = |line: &str| {
         let indent = line.len() - line.trim_start_matches(' ').len() + 2;
         let indent = " ".repeat(indent.min(columns / 2));
-        // Paths and options stay whole.
+        // Paths and options are not broken.
         let options = Options::new(columns)
             .subsequent_indent(&indent)
             .word_separator(WordSeparator::AsciiSpace)
@@ -118,7 +118,7 @@ pub fn warn(warnings: &[Diagnostic]) {
 }
 
 /// Prints warnings that are words alone.
-pub fn warn_words(words: impl IntoIterator<Item = impl Into<String>>) {
+pub fn warn_texts(words: impl IntoIterator<Item = impl Into<String>>) {
     let warnings = words.into_iter();
     warnings.for_each(|words| warn(&[Diagnostic::warning("", words)]));
 }

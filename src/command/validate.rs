@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use super::conclusion::conclude;
 use super::interrupt;
-use super::progress::{Progress, tell_files};
+use super::progress::{Progress, report_files};
 use super::terminal::{Outcome, print_report, warn};
 use crate::kinds;
 use gelbench_base::error::{Diagnostic, Error};
@@ -18,7 +18,7 @@ use gelbench_validation::validation;
 /// Computes the cases, and writes one report of them.
 pub fn run(names: &[String], quick: bool, folder: Option<PathBuf>) -> Outcome {
     let chosen = kinds::choose(names, quick)?;
-    // A part never takes the place of the whole report.
+    // The report of some cases never replaces that of all.
     let part = match &*chosen {
         [case] => case.name,
         all if all.len() == kinds::KINDS.len() => "",
@@ -43,7 +43,7 @@ pub fn run(names: &[String], quick: bool, folder: Option<PathBuf>) -> Outcome {
     warnings.extend(output::write_document(&mut results, "TIMES", &times, &[])?);
     drop(progress);
     warn(&warnings);
-    tell_files(&results.finish()?);
+    report_files(&results.finish()?);
     print_report(|| cases_json(&cases))?;
     let report = folder.join("REPORT.md");
     let checks = cases.iter().flat_map(|case| {
@@ -63,7 +63,7 @@ fn computed(
     if let Some(kept) = folder.kept(case.name) {
         return Ok(kept);
     }
-    let report = |what: &str| progress.tell(&format!("{}: {what}", case.name));
+    let report = |what: &str| progress.report(&format!("{}: {what}", case.name));
     report("begins");
     let results = kinds::compute_or_fail(case, studies::Progress::to(&report))?;
     folder.keep(case.name, &results)?;

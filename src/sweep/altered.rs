@@ -14,7 +14,7 @@ use gelbench_studies::studies::{PreparedStudy, Steps, motion, specimen};
 /// The card of a run stands beside the study's own under this name, in memory.
 const CARD: &str = "gelbench-sweep-card.toml";
 
-/// What a study itself says under `material`; all else are parameters of the card.
+/// The keys under `material` that belong to the study; all others are parameters of the card.
 const OF_THE_STUDY: [&str; 4] = ["card", "sheet", "density", "viscosity"];
 
 /// A file in memory: its path and its content.
@@ -161,7 +161,7 @@ impl VariedCard {
         Diagnostic::error(key, message).hint(hint).into()
     }
 
-    /// Sets a parameter, by the name that a fit has for it; says whether the card has one of this name.
+    /// Sets a parameter, by the name that a fit has for it; returns whether the card has one of this name.
     fn set(&mut self, parameter: &[&str], value: &NewValue) -> bool {
         // Terms are counted from one.
         let index = match *parameter {

@@ -16,7 +16,7 @@ use gelbench_studies::studies::name;
 /// The file with a line for each run.
 const TABLE: &str = "sweep.csv";
 
-/// The same for machines.
+/// The statistics of all figures, for machines.
 const REPORT: &str = "sweep.json";
 
 /// One part of the runs.
@@ -223,7 +223,7 @@ pub fn join(runs: &[Run], mut rows: Vec<Row>) -> Result<Vec<Row>, Error> {
     let same = rows.len() == runs.len()
         && rows.iter().zip(runs).all(|(row, run)| {
             let mut pairs = row.settings.iter().zip(&run.settings);
-            row.number == run.number && pairs.all(|(a, b)| a.words() == b.words())
+            row.number == run.number && pairs.all(|(a, b)| a.plain_text() == b.plain_text())
         });
     if same {
         Ok(rows)

@@ -46,7 +46,7 @@ pub fn write(keys: &[String], rows: &[Row]) -> Vec<u8> {
             .iter()
             .map(|name| figures.get(name).map_or(String::new(), f64::to_string));
         let first = std::iter::once(row.number.to_string());
-        let settings = row.settings.iter().map(Setting::words);
+        let settings = row.settings.iter().map(Setting::plain_text);
         let last = [
             row.passed.to_string(),
             row.fault.clone(),

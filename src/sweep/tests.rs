@@ -200,7 +200,7 @@ fn values_are_each_one_and_without_the_noise_of_their_last_digits() {
     let Values::Listed(values) = Variable::parse("x=0.3..0.6:11").unwrap().values else {
         panic!("no grid");
     };
-    let words: Vec<String> = values.iter().map(Setting::words).collect();
+    let words: Vec<String> = values.iter().map(Setting::plain_text).collect();
     assert_eq!(words[3], "0.39");
 }
 

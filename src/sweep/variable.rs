@@ -77,7 +77,7 @@ impl Setting {
     }
 
     /// The value without its unit.
-    pub fn words(&self) -> String {
+    pub fn plain_text(&self) -> String {
         match self {
             Self::Integer(integer) => integer.to_string(),
             Self::Number(value, _) => value.to_string(),
@@ -179,8 +179,8 @@ impl Values {
             return Err("the values have several units".to_owned());
         }
         let mut seen = HashSet::new();
-        match listed.iter().find(|one| !seen.insert(one.words())) {
-            Some(again) => Err(format!("the value {} occurs twice", again.words())),
+        match listed.iter().find(|one| !seen.insert(one.plain_text())) {
+            Some(again) => Err(format!("the value {} occurs twice", again.plain_text())),
             None => Ok(Self::Listed(listed)),
         }
     }
@@ -234,7 +234,7 @@ fn grid([low, high]: [f64; 2], unit: &str, count: &str) -> Result<Values, String
     Ok(Values::Listed((0..count).map(value).collect()))
 }
 
-/// The range that is meant by `1-3 mm`, `1 – 3 mm` or `1 to 3 mm`.
+/// The correct spelling of the range in `1-3 mm`, `1 – 3 mm` or `1 to 3 mm`.
 fn misspelt_range(text: &str) -> Option<String> {
     let (low, rest) = number(text)?;
     let high = ["-", "–", "—", "to "]

@@ -27,7 +27,7 @@ pub fn link(study: &str) -> Option<String> {
 }
 
 /// Notes what is on the table, and how it is drawn.
-pub fn tell(bench: &Workbench, context: &Context) {
+pub fn publish(bench: &Workbench, context: &Context) {
     let room = context.content_rect();
     let table = &bench.table;
     let model = |model: Model| {

@@ -18,8 +18,7 @@ pub mod vtk;
 pub use files::{TakesFiles, save, write, write_document, write_frame, write_grids, write_picture};
 #[cfg(feature = "pictures")]
 pub use folder::{
-    ANOTHER_FOLDER, BrokenOff, Left, ResultFolder, Unfinished, free_name, identity, refuse_inputs,
-    relative,
+    ANOTHER_FOLDER, BrokenOff, Remains, ResultFolder, Unfinished, identity, refuse_inputs, relative,
 };
 pub use markdown::markdown;
 #[cfg(feature = "pictures")]

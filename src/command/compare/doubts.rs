@@ -33,7 +33,7 @@ pub fn doubts(differences: &[Difference], at: f64) -> Vec<Diagnostic> {
     doubt.into_iter().chain(shifted.map(shift_doubt)).collect()
 }
 
-/// Finite elements that a motion of the whole body brings near: it says nothing of the material.
+/// The difference of finite elements that is mostly a rigid-body motion, which does not concern the material.
 fn shift_doubt(finite_elements: &Difference) -> Diagnostic {
     let Difference {
         shift,

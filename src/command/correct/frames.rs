@@ -33,7 +33,7 @@ pub fn correct(field: &mut MarkerStudy, job: Job) -> Result<(Vec<FieldEstimate>,
     }
     folder.add("vtk/view.py", output::vtk::VIEW.as_bytes())?;
     let seconds = start.elapsed().as_secs_f64();
-    progress.tell("files");
+    progress.report("files");
     let results = written::results(
         &job.pictures,
         field,
@@ -109,7 +109,7 @@ fn together<'a>(
         .map(|frame| frame.number.to_string())
         .collect();
     if !numbers.is_empty() {
-        progress.tell(&format!("frame {}", numbers.join(", ")));
+        progress.report(&format!("frame {}", numbers.join(", ")));
     }
     let mut estimated = field.estimate_frames(others).into_iter();
     let each = frames.iter().zip(kept).filter_map(|(frame, kept)| {

@@ -9,7 +9,7 @@ use super::options::Options;
 use super::request::request;
 use crate::command::interrupt;
 use crate::command::progress::Progress;
-use crate::command::terminal::{Outcome, print_report, warn, warn_words};
+use crate::command::terminal::{Outcome, print_report, warn, warn_texts};
 use gelbench_base::error::Error;
 use gelbench_estimation::estimation::{FieldEstimate, JointSettings};
 use gelbench_mechanics::material::Card;
@@ -35,7 +35,7 @@ pub fn run(options: Options, mut job: Job) -> Outcome {
     interrupt::guard(&folder);
     let start = Instant::now();
     let progress = Progress::of(0);
-    let estimate = study.estimate(&|action| progress.tell(action))?;
+    let estimate = study.estimate(&|action| progress.report(action))?;
     drop(progress);
     let mut corrected = Vec::new();
     for (name, specimen) in &study.specimens {
@@ -46,7 +46,7 @@ pub fn run(options: Options, mut job: Job) -> Outcome {
         )?);
     }
     warn(&[given_the_law()]);
-    warn_words(undetermined(&estimate.estimate));
+    warn_texts(undetermined(&estimate.estimate));
     interrupt::guard(&folder);
     let results = results(&study, &estimate, &corrected, start.elapsed().as_secs_f64());
     finish(folder, &results)?;
@@ -161,5 +161,5 @@ fn of_file(file: &Path, like: &Request, inputs: &mut Vec<PathBuf>) -> Result<Nam
 fn prepared(mut request: Request) -> Result<MarkerStudy, Error> {
     request.conditions.fit.clear();
     let progress = Progress::of(0);
-    MarkerStudy::prepare(request, &|action| progress.tell(action))
+    MarkerStudy::prepare(request, &|action| progress.report(action))
 }

@@ -333,7 +333,7 @@ impl eframe::App for Workbench {
             measure.worked(begun.elapsed());
         }
         #[cfg(target_arch = "wasm32")]
-        crate::page::tell(self, ui.ctx());
+        crate::page::publish(self, ui.ctx());
         #[cfg(not(target_arch = "wasm32"))]
         if let Some(report) = self.measured() {
             println!("{report}");

@@ -33,7 +33,7 @@ pub(super) fn of_npy(bytes: &[u8]) -> Result<Vec<TableText>, Unconvertible> {
 /// The table in an archive of NumPy.
 ///
 /// # Errors
-/// [`Unconvertible`] where none is meant, or it is damaged.
+/// [`Unconvertible`] where it is not clear which array is the table, or the file is damaged.
 pub(super) fn of_npz(
     mut archive: Archive,
     part: Option<&str>,
@@ -63,7 +63,7 @@ pub(super) fn of_npz(
 /// The table of a file of MATLAB.
 ///
 /// # Errors
-/// [`Unconvertible`] where none is meant, or it is damaged.
+/// [`Unconvertible`] where it is not clear which array is the table, or the file is damaged.
 pub(super) fn of_mat(bytes: &[u8], part: Option<&str>) -> Result<Vec<TableText>, Unconvertible> {
     chosen(matlab::arrays(bytes)?, part)
 }

@@ -138,7 +138,7 @@ pub fn column_named(table: &Table, name: &str) -> Result<usize, Diagnostic> {
     let criteria: [&dyn Fn(&Column) -> bool; 3] = [
         &|column| column.head() == name,
         &|column| column.written == name,
-        &|column| column.is_meant(name),
+        &|column| column.answers_to(name),
     ];
     let heads: Vec<String> = table.columns.iter().map(Column::head).collect();
     let all = heads.join(", ");

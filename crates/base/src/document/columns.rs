@@ -85,8 +85,8 @@ impl Column {
         self.head.clone()
     }
 
-    /// Whether a user means this column by a name in any case: a unit or a remark behind the name must be the column's, and may be left out.
-    pub(super) fn is_meant(&self, wanted: &str) -> bool {
+    /// Whether a name in upper or lower case is that of this column: a unit or a remark behind the name must be the column's, and may be left out.
+    pub(super) fn answers_to(&self, wanted: &str) -> bool {
         let wanted = Self::new(wanted);
         let unit = wanted.unit.filter(|unit| is_unit(unit));
         self.name == wanted.name

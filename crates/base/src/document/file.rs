@@ -18,7 +18,7 @@ pub const MOST_OF_DATA: u64 = 2 << 30;
 #[derive(Debug, thiserror::Error)]
 pub enum FileFault {
     /// There is no file at this path, but perhaps one with a similar name, which is looked for when the fault is reported.
-    #[error("there is no such file{}", meant(.0))]
+    #[error("there is no such file{}", suggestion(.0))]
     Missing(PathBuf),
     /// A folder.
     #[error("it is a folder; name a file in it")]
@@ -66,7 +66,8 @@ pub fn read_bytes(path: &Path, most: u64) -> Result<Vec<u8>, FileFault> {
     limited(bytes)
 }
 
-fn meant(path: &Path) -> String {
+/// The file that the user may have had in mind, as the end of a sentence.
+fn suggestion(path: &Path) -> String {
     let named = similar(path).map(|path| format!("; did you mean {}?", path.display()));
     named.unwrap_or_default()
 }

@@ -48,7 +48,7 @@ pub fn is_table_path(path: &Path) -> bool {
     ending.is_some_and(|ending| TABLES.iter().any(|known| ending == *known))
 }
 
-/// The tables of a file that is no text, those that are meant first; `None` for any other file.
+/// The tables of a file that is no text, in the order in which they are tried; `None` for any other file.
 ///
 /// # Errors
 /// [`Unconvertible`] where it has no table, not the one of this name, or is too large.

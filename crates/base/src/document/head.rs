@@ -182,7 +182,7 @@ impl<'a> Head<'a> {
         Err(self.fault_of(key, format!("the {key} \"{value}\" {reason}"), &hint))
     }
 
-    /// The same quantity where it is required.
+    /// A positive quantity that must be stated.
     ///
     /// # Errors
     /// A fault where it is not stated, or is not a positive quantity.
@@ -215,12 +215,12 @@ impl<'a> Head<'a> {
         };
         let unit = unit.ok_or_else(|| self.missing(key, example))?;
         let rare = units::rare(&unit).filter(|rare| rare.dimension == dimension);
-        // Who names it beside the file means it.
-        let is_meant = self
+        // A unit that is stated for this file is intended, however rare it is.
+        let is_confirmed = self
             .given
             .get(key)
             .is_some_and(|given| given.trim() == unit);
-        if let Some(rare) = rare.filter(|_| is_meant) {
+        if let Some(rare) = rare.filter(|_| is_confirmed) {
             return Ok(rare.factor);
         }
         let symbol = units::symbol(&unit).unwrap_or(&unit);

@@ -1,6 +1,6 @@
 //! The files that a program has read and must not overwrite.
 //!
-//! A command calls [`remember`] once. A program of your own that does not call it may write anywhere.
+//! A command calls [`remember`] once. A program that does not call it may write anywhere.
 
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};

@@ -208,7 +208,8 @@ impl<'a> Section<'a> {
         self.unknown_keys_with(|_| None);
     }
 
-    /// The same with a remedy for an unknown key; reports nothing where a choice on which keys may depend could not be read.
+    /// Reports every key of the table that was never looked up, with a `remedy` where there is one; reports nothing where a choice on which
+    /// keys may depend could not be read.
     pub fn unknown_keys_with(&self, remedy: impl Fn(&str) -> Option<String>) {
         if self.undecided.get() {
             return;
@@ -238,7 +239,7 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// Records that a key is looked up, and its type if its value is read.
+    /// Records that a key is looked up, and the type of its value if that is read.
     fn record_key(&self, key: &'static str, takes: Option<Takes>) {
         let example = self.defaults.and_then(|table| table.get(key));
         let required = self.required.contains(&key);
@@ -278,7 +279,7 @@ impl<'a> Section<'a> {
         self.value_like(key, "…")
     }
 
-    /// The same with an example for the fault where the defaults have none.
+    /// The value in the file, otherwise the default; `example` stands in the fault where the defaults have none.
     fn value_like(&self, key: &'static str, example: &str) -> Option<Value<'a>> {
         if let Some(written) = self.written(key) {
             return Some(written);

@@ -14,7 +14,7 @@ pub fn static_text<'a, D: Deserializer<'a>>(from: D) -> Result<StaticText, D::Er
     String::deserialize(from).map(|text| &*text.leak())
 }
 
-/// The same where there may be none.
+/// Reads a text of the program where there may be none.
 ///
 /// # Errors
 /// As [`static_text`].

@@ -38,7 +38,7 @@ fn typographic_quote(text: &str, at: usize) -> Option<char> {
     line.chars().find(|letter| "“”„‘’‚«»".contains(*letter))
 }
 
-/// Advice where the text about a fault does not show what was meant.
+/// Advice where the text about a fault does not show what the author intended.
 pub(super) fn advice(message: &str) -> Option<String> {
     let closing = match message {
         _ if message.contains("array") => "a list that is opened by [ or a text in quotes",

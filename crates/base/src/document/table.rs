@@ -40,7 +40,7 @@ pub struct Table {
     delimiter: u8,
     /// The first field of each column that is not a number.
     faults: Vec<FieldFault>,
-    /// The same without fields that mark a missing number: empty ones and NaN.
+    /// The first field of each column that is neither a number nor marks a missing one: empty, or NaN.
     nonsense: Vec<FieldFault>,
 }
 

@@ -33,7 +33,7 @@ pub use identity::identity;
 use inputs::{positions, refuse_input};
 pub use inputs::{refuse_inputs, relative};
 use manifest::{Locked, Manifest, Moving, PARTIAL, is_inside};
-pub use unfinished::{BrokenOff, Left, Unfinished};
+pub use unfinished::{BrokenOff, Remains, Unfinished};
 use unfinished::{PARTS, Stage};
 
 /// What to do where results would be replaced.
@@ -54,7 +54,7 @@ pub struct ResultFolder {
     names: Vec<String>,
     /// How many of the names belong to parts of the work that are kept.
     kept: usize,
-    /// How many of the names have been looked at for files that are in their way.
+    /// How many of the names were compared with the files that are there already.
     looked_at: usize,
 }
 
@@ -68,8 +68,8 @@ impl ResultFolder {
         Self::begin(path, writer, inputs, None)
     }
 
-    /// The same, beginning with what a run of the same `identity` has kept when it was broken off. The identity
-    /// follows from everything that the results follow from, and is part of a file's name.
+    /// Opens the folder as [`ResultFolder::open`] does, beginning with what a run of the same `identity` has kept when it was broken
+    /// off. The identity follows from everything that the results follow from, and is part of a file's name.
     ///
     /// # Errors
     /// As [`ResultFolder::open`].

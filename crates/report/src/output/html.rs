@@ -140,7 +140,7 @@ fn class(cell: &str) -> &'static str {
         rest.is_some_and(|rest| rest.is_empty() || rest.starts_with([' ', ',', ':', ';']))
     };
     match cell {
-        // What is said behind it does not change the verdict.
+        // Words after the verdict do not change it.
         _ if verdict("pass") => "pass",
         _ if verdict("FAIL") => "fail",
         _ if verdict("cannot be judged") => "open",

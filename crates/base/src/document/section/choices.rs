@@ -31,12 +31,12 @@ impl Section<'_> {
             is_new
         });
         let result = names.iter().map(|name| self.named(key, name, choices));
-        // All of them are looked at, for every fault is told.
+        // All of them are looked at, so that every fault is reported.
         let result: Vec<Option<T>> = result.collect();
         result.into_iter().collect()
     }
 
-    /// A truth value that is `usual` where the file does not say it, whatever the built-in study has as an example.
+    /// A truth value that is `usual` where the file does not state it, whatever the built-in study has as an example.
     pub fn flag_or(&self, usual: bool, key: &'static str) -> bool {
         self.record_key_as(
             key,

@@ -10,7 +10,7 @@ use super::{Section, Value};
 use crate::document::{Bound, Takes};
 use crate::units::{self, Dimension, Linear};
 
-/// Bare ratios up to here are what they say; a larger one may have been meant in percent.
+/// Bare ratios up to here are taken as they are; a larger one may be intended in percent.
 const MOST_BARE: f64 = 5.0;
 
 impl<'a> Section<'a> {
@@ -59,7 +59,7 @@ impl<'a> Section<'a> {
         self.read(key, &wanted, |value| count_pair(value, low, high))
     }
 
-    /// The same, or a word that leaves the choice to the program: `Some(None)`.
+    /// A list of exactly two whole numbers, or a word that leaves the choice to the program: `Some(None)`.
     pub fn count_pair_or(
         &self,
         word: &str,
@@ -103,7 +103,7 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// A quantity, or a word that leaves it to the program: `None`.
+    /// A quantity, or a word with which the program chooses it: `None`.
     pub fn quantity_or(
         &self,
         word: &str,
@@ -116,7 +116,7 @@ impl<'a> Section<'a> {
         (!is_word).then(|| self.quantity(key, dimension, bound))
     }
 
-    /// A number without a dimension, or a word that leaves it to the program: `None`.
+    /// A number without a dimension, or a word with which the program chooses it: `None`.
     pub fn number_or(&self, word: &str, key: &'static str, bound: Bound) -> Option<f64> {
         let is_word = self.is_word(word, key);
         self.record_key(key, Some(Takes::Number(bound)));
@@ -237,7 +237,7 @@ impl<'a> Section<'a> {
         }
     }
 
-    /// A list of ratios that are no parts of a whole: bare numbers up to `most` are what they say.
+    /// A list of ratios that may exceed 1, such as load factors: bare numbers up to `most` are taken as they are.
     pub fn multiples(&self, key: &'static str, bound: Bound, most: f64) -> Vec<f64> {
         self.list(key, (Dimension::Ratio, "1.0"), bound, most)
     }

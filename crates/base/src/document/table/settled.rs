@@ -1,4 +1,4 @@
-//! What is settled about the columns once all rows are read.
+//! What can only be decided about the columns once all rows are read.
 
 use std::ops::Range;
 
@@ -19,7 +19,7 @@ impl Table {
         self.name_by_remark_if(|_| true);
     }
 
-    /// The same if these are names as `accepted`.
+    /// Takes names from that remark if they are `accepted`.
     fn name_by_remark_if(&mut self, accepted: fn(&[&str]) -> bool) {
         let unnamed = self.columns.iter().all(|column| column.name.is_empty());
         let first_row = self.rows.first().map_or(0, |(_, position)| position.start);

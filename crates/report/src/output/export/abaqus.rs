@@ -256,7 +256,7 @@ fn output(model: &Model, deck: &mut Deck) {
     }
 }
 
-/// Names the directions of a material's fibres, or the axes of Fung's law, and returns what the section says about them.
+/// Names the directions of a material's fibres, or the axes of Fung's law, and returns the option of the section that refers to them.
 fn orientation(material: &PartMaterial, deck: &mut Deck) -> String {
     let CodeLaw::Named {
         keyword,

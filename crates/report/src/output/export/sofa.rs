@@ -97,7 +97,7 @@ impl Scene<'_> {
         })
     }
 
-    /// Refuses what a scene of springs cannot say.
+    /// Refuses what a scene of springs cannot express.
     fn check(&self) -> Result<(), Diagnostic> {
         let refused =
             |key: &str, message: &str, hint: &str| Err(Diagnostic::error(key, message).hint(hint));

@@ -1,9 +1,9 @@
-//! What tells whether a run that was broken off is the same as a later one.
+//! The identity of a run, by which a later start of the same run is recognised.
 
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Path, PathBuf};
 
-/// The identity of a run by what was said to it, the contents of all files that it has read, and the program itself.
+/// The identity of a run: its statement, the contents of all files that it has read, and the program itself.
 pub fn identity(statement: &str, files: &[PathBuf], program: Option<&Path>) -> String {
     let mut hasher = DefaultHasher::new();
     statement.hash(&mut hasher);

@@ -14,7 +14,7 @@ pub fn refuse_inputs(target: &Path, inputs: &[&Path]) -> Result<(), Error> {
     refuse_input(target, &positions(inputs))
 }
 
-/// The whole paths of files, as far as there are any.
+/// The absolute paths of the files that exist.
 pub fn positions(files: &[&Path]) -> Vec<PathBuf> {
     let files = files.iter();
     files

@@ -33,7 +33,7 @@ pub struct Manifest {
     pub moving: Option<Moving>,
 }
 
-/// A whole set of files that is being moved into place.
+/// A complete set of files that is being moved into place.
 #[derive(Clone, Debug, Default, Deserialize, Serialize)]
 pub struct Moving {
     /// The folder that they come from.
@@ -136,11 +136,11 @@ impl Locked {
             serde_json::to_string_pretty(&manifest).map_err(|cause| Error::write(&path, cause))?;
         text.push('\n');
         if !path.exists() {
-            // The folder was taken away and is made anew.
+            // The folder was removed in the meantime.
             fs::create_dir_all(&self.folder).map_err(fault)?;
             self.file = File::create(&path).map_err(fault)?;
         }
-        // Blanks over the rest of a longer text, so that the file holds a whole list at every moment.
+        // Blanks over the rest of a longer text, so that the file holds a complete list at every moment.
         let length = text.len();
         let before = self.file.metadata().map_err(fault)?.len() as usize;
         text.extend(std::iter::repeat_n('\n', before.saturating_sub(length)));

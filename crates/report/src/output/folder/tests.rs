@@ -213,7 +213,7 @@ fn work_that_was_broken_off_goes_on_where_it_was_with_the_same_identity_only() {
     first.add("a.csv", b"1").unwrap();
     first.keep("1", &"one".to_owned()).unwrap();
     first.add("b.csv", b"half").unwrap();
-    assert_eq!(first.unfinished().break_off().left, Left::Parts);
+    assert_eq!(first.unfinished().break_off().remains, Remains::Parts);
     drop(first);
     let mut second = begin("1");
     assert_eq!(second.kept("1"), Some("one".to_owned()));
@@ -223,7 +223,7 @@ fn work_that_was_broken_off_goes_on_where_it_was_with_the_same_identity_only() {
     assert_eq!(names(path), [MANIFEST, "a.csv", "b.csv"]);
     let mut third = begin("1");
     third.keep("1", &"one".to_owned()).unwrap();
-    assert_eq!(third.unfinished().break_off().left, Left::Parts);
+    assert_eq!(third.unfinished().break_off().remains, Remains::Parts);
     drop(third);
     assert_eq!(begin("2").kept::<String>("1"), None);
     assert_eq!(names(path), [MANIFEST, "a.csv", "b.csv"]);
@@ -265,7 +265,7 @@ fn nothing_is_written_into_what_was_broken_off() {
         while !unfinished.partial.join(format!("vtk/{file}.vtu")).exists() {
             std::thread::yield_now();
         }
-        assert_eq!(unfinished.break_off().left, Left::Nothing);
+        assert_eq!(unfinished.break_off().remains, Remains::Nothing);
         assert!(writer.join().unwrap().contains("interrupted"));
         assert!(!path.exists(), "{:?}", names(path));
     }
@@ -278,7 +278,7 @@ fn results_that_are_in_place_stay_when_their_run_is_broken_off() {
     results.add("a.csv", b"1").unwrap();
     let unfinished = results.unfinished();
     results.finish().unwrap();
-    assert_eq!(unfinished.break_off().left, Left::Results);
+    assert_eq!(unfinished.break_off().remains, Remains::Results);
     assert_eq!(names(folder.path()), [MANIFEST, "a.csv"]);
 }
 

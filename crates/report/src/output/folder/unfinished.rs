@@ -31,9 +31,9 @@ pub(super) enum Stage {
     BrokenOff,
 }
 
-/// What is left of a run that was broken off.
+/// What remains of a run that was broken off.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Left {
+pub enum Remains {
     /// Nothing.
     Nothing,
     /// Parts from which a later start goes on.
@@ -45,8 +45,8 @@ pub enum Left {
 /// A run that was broken off: nobody writes into its folder while this is held, nor later.
 #[derive(Debug)]
 pub struct BrokenOff<'a> {
-    /// What is left of it.
-    pub left: Left,
+    /// What remains of it.
+    pub remains: Remains,
     _writers_wait: MutexGuard<'a, Stage>,
 }
 
@@ -60,7 +60,7 @@ impl Unfinished {
         }
     }
 
-    /// Lets somebody write into it, and nobody break it off meanwhile.
+    /// Permission to write into it: nobody breaks it off while it is held.
     ///
     /// # Errors
     /// [`Error::Write`] when it was broken off.
@@ -76,7 +76,7 @@ impl Unfinished {
         self.stage.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Takes it away, and a folder into which nothing came to be written.
+    /// Removes it, and its folder where nothing was written into it.
     pub fn discard(&self) {
         self.take_away(&mut self.stage());
     }
@@ -95,21 +95,21 @@ impl Unfinished {
         let _ = fs::remove_dir(&self.folder);
     }
 
-    /// Takes it away, unless it is in place or a later start can go on from it.
+    /// Removes it, unless it is in place or a later start can go on from it.
     pub fn break_off(&self) -> BrokenOff<'_> {
         let mut stage = self.stage();
-        let left = match *stage {
-            Stage::InPlace => Left::Results,
-            _ if self.partial.join(PARTS).is_dir() => Left::Parts,
-            _ => Left::Nothing,
+        let remains = match *stage {
+            Stage::InPlace => Remains::Results,
+            _ if self.partial.join(PARTS).is_dir() => Remains::Parts,
+            _ => Remains::Nothing,
         };
-        match left {
-            Left::Results => {}
-            Left::Parts => *stage = Stage::BrokenOff,
-            Left::Nothing => self.take_away(&mut stage),
+        match remains {
+            Remains::Results => {}
+            Remains::Parts => *stage = Stage::BrokenOff,
+            Remains::Nothing => self.take_away(&mut stage),
         }
         BrokenOff {
-            left,
+            remains,
             _writers_wait: stage,
         }
     }

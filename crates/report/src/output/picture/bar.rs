@@ -1,4 +1,4 @@
-//! The colour bar below fields, with the quantity that it shows and what lies beyond its ends.
+//! The colour bar below fields, with the quantity that it shows and the values outside of its range.
 
 use super::canvas::{EDGE, GAP, Sheet};
 use super::colours::Range;
@@ -8,7 +8,7 @@ use super::numbers::{Numbers, Ticks};
 use super::paint::Painter;
 use crate::results::{Panel, Scale, Values};
 
-/// How far the arrow at an end reaches: values lie beyond it.
+/// The length of the arrow at an end that values exceed.
 const ARROW: f64 = 14.0;
 
 const HEIGHT: f64 = 12.0;

@@ -272,7 +272,7 @@ impl<'a> Frame<'a> {
         points.iter().map(|(x, y)| self.pixel([*x, *y])).collect()
     }
 
-    /// The positions of a line's points, of many only those that can be told apart.
+    /// The positions of a line's points, of many only those that can be distinguished.
     fn positions(&self, line: &Line) -> Vec<(f64, f64)> {
         let position = |[x, y]: &[f64; 2]| {
             let [x, y] = [

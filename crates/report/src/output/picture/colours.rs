@@ -3,10 +3,10 @@
 use crate::results::{Panel, Scale, Values};
 use crate::statistics::extremes;
 
-/// What share of the area may lie beyond each end of the colour bar.
-const BEYOND: f64 = 0.002;
+/// The share of the area whose values may exceed each end of the colour bar.
+const EXCEEDING: f64 = 0.002;
 
-/// Values beyond are shown as such if they reach so far, in lengths of the colour bar; else the bar is made longer.
+/// Values that exceed an end by more than this, in lengths of the colour bar, are marked; for smaller ones the bar is made longer.
 const FAR: f64 = 0.15;
 
 /// The most decades of a logarithmic colour bar: below lie single nodes that happen to be exact.
@@ -15,7 +15,7 @@ const DECADES: f64 = 6.0;
 /// A field counts as one of both signs if the smaller side is at least so large a part of the larger one.
 const SIGNED: f64 = 0.02;
 
-/// The positions at the ends of the colour bar, and what lies beyond them.
+/// The positions at the ends of the colour bar, and the values that exceed them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Range {
     pub low: f64,
@@ -148,7 +148,7 @@ fn middle(mut parts: Vec<(f64, f64)>) -> Option<[f64; 2]> {
         });
         part.or(parts.last()).map(|(position, _)| *position)
     };
-    Some([first_above(BEYOND)?, first_above(1.0 - BEYOND)?])
+    Some([first_above(EXCEEDING)?, first_above(1.0 - EXCEEDING)?])
 }
 
 fn areas(panel: &Panel) -> impl Iterator<Item = f64> {

@@ -38,7 +38,7 @@ pub(super) fn encoder<'a>(
     encoder
 }
 
-/// A picture as a PNG, which says how large it is on paper where its look is one for paper.
+/// A picture as a PNG; for a look that is printed with its size on paper.
 pub(super) fn encode(picture: &Pixmap, look: Option<Look>) -> Result<Vec<u8>, EncodingError> {
     let mut bytes = Vec::new();
     let mut encoder = encoder(&mut bytes, picture);

@@ -16,7 +16,7 @@ const CONTOUR: f32 = 0.5;
 /// How much lines of equal values cover, up to 255.
 const CONTOUR_COVER: u8 = 110;
 
-/// What is said of the outlines at rest.
+/// The remark on the outlines at rest.
 const REST: &str = "thin lines: at rest";
 
 /// Fields on so many triangles at most have contour lines.
@@ -26,7 +26,7 @@ const MOST_CONTOURED: usize = 400_000;
 pub(super) struct Plan {
     layout: Layout,
     bar: Bar,
-    /// Where it is said what thin lines are.
+    /// Where the remark on the outlines at rest stands.
     rest: Option<([f64; 2], Align)>,
 }
 
@@ -149,7 +149,7 @@ impl FieldFigure {
     }
 }
 
-/// Words without what stands in brackets at their end, where the whole has no room.
+/// A label without the brackets at its end, where the complete label has no room.
 fn short(words: &str, width: f64, look: Look) -> &str {
     match words.split_once(" (") {
         Some((begin, _)) if look.name().width(words) > width => begin,

@@ -35,7 +35,7 @@ pub(super) struct Layout {
     above: f64,
     x: Ticks,
     y: Ticks,
-    /// The whole picture's width.
+    /// The width of the picture.
     pub width: f64,
 }
 
@@ -83,7 +83,7 @@ impl Layout {
         }
     }
 
-    /// The same of panels without words above them.
+    /// The layout of panels without labels above them.
     pub fn without_labels(self) -> Self {
         let above = NO_LABEL_HEIGHT;
         Self { above, ..self }

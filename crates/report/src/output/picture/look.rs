@@ -199,7 +199,7 @@ impl Look {
         self.mixed(colour, 4)
     }
 
-    /// The same for an area beside another one of this colour.
+    /// The colour of an area beside another one of the same line's colour.
     pub fn darker_area(self, colour: [u8; 3]) -> Colour {
         self.mixed(colour, 2)
     }

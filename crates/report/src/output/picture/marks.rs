@@ -34,13 +34,13 @@ impl Pen {
         }
     }
 
-    /// The same with dashes.
+    /// This pen with dashes.
     pub fn dashed(self, dashes: [f32; 2]) -> Self {
         let dashes = Some(dashes);
         Self { dashes, ..self }
     }
 
-    /// The same, which covers so much of what is below.
+    /// This pen, covering so much of what is below.
     pub fn covering(self, cover: u8) -> Self {
         Self { cover, ..self }
     }
@@ -200,7 +200,7 @@ impl Rectangle {
         [[left, top], [right, top], [right, bottom], [left, bottom]]
     }
 
-    /// The same, so much larger on each side.
+    /// A rectangle that is so much larger on each side.
     pub fn grown(&self, by: f64) -> Self {
         let low = self.low.map(|end| end - by);
         Self::new(low, self.high.map(|end| end + by))

@@ -22,7 +22,7 @@ impl Scale {
         }
     }
 
-    /// Limits that hold all positions: whole decades of many, or a little more than the values take.
+    /// Limits that hold all positions: complete decades where there are many, otherwise a margin around the values.
     pub(super) fn limits(self, positions: impl Iterator<Item = f64>) -> [f64; 2] {
         let [low, high] = extremes(positions);
         if low > high {
@@ -60,7 +60,7 @@ fn round_step(least: f64) -> f64 {
 /// The fewest ticks of an axis.
 const FEWEST: usize = 3;
 
-/// Where the ticks of an axis are, and what they say.
+/// The positions of the ticks of an axis, with their labels.
 #[derive(Clone, Debug)]
 pub(super) struct Ticks {
     pub at: Vec<(f64, String)>,

@@ -240,7 +240,7 @@ fn write_words(content: &mut Content, words: &Words, covers: &mut Covers) {
     content.end_text();
 }
 
-/// A font whose letters are told by their numbers in its file, with what they mean for those who copy or search.
+/// A font whose letters are named by their numbers in its file, with their meaning for programs that copy or search.
 fn write_font(
     pdf: &mut Pdf,
     name: Name,

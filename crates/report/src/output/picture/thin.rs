@@ -8,7 +8,7 @@ type Point = (f64, f64);
 /// Up to so many points are drawn as they are.
 const MANY: usize = 5_000;
 
-/// Columns and rows of a chart within which points are told apart: about one for each point of the design.
+/// Columns and rows of a chart within which points are distinguished: about one for each point of the design.
 const COLUMNS: f64 = 500.0;
 const ROWS: f64 = 300.0;
 
