@@ -81,12 +81,16 @@ pub fn moduli_line(card: &Card) -> String {
 
 fn moduli(card: &Card) -> String {
     let (young, shear) = (card.youngs_modulus(), card.law.shear_modulus());
-    let along = if card.law.is_isotropic() {
+    format!("E₀ = {young:.6} MPa{}, μ₀ = {shear:.6} MPa", along(card))
+}
+
+/// The direction of a Young's modulus, where there are several.
+pub fn along(card: &Card) -> &'static str {
+    if card.law.is_isotropic() {
         ""
     } else {
         " along the first axis"
-    };
-    format!("E₀ = {young:.6} MPa{along}, μ₀ = {shear:.6} MPa")
+    }
 }
 
 /// Everything about a card.

@@ -6,6 +6,7 @@ use clap::{ArgAction, Args};
 
 use super::choice::one_of;
 use super::fit::{a_law, shipped};
+use super::message::along;
 use super::parameter_bounds::pair;
 use super::terminal::{Outcome, print, save};
 use gelbench_base::document::{file, read_text};
@@ -198,11 +199,6 @@ fn described(card: &Card) -> String {
         infinite if infinite.is_infinite() => "K infinite: the volume is constant".to_owned(),
         bulk => format!("K = {} MPa", brief(bulk)),
     };
-    let along = if card.law.is_isotropic() {
-        ""
-    } else {
-        " along the first axis"
-    };
     let [young, ratio, shear] = [
         moduli.youngs_modulus,
         moduli.poisson_ratio,
@@ -210,10 +206,11 @@ fn described(card: &Card) -> String {
     ]
     .map(brief);
     format!(
-        "{}\n\n  energy     {}\n  with       {}\n  at rest    E = {young} MPa{along}, ν = {ratio}, μ = {shear} MPa, {bulk}\n",
+        "{}\n\n  energy     {}\n  with       {}\n  at rest    E = {young} MPa{}, ν = {ratio}, μ = {shear} MPa, {bulk}\n",
         card.title,
         card.energy(),
-        card.symbols().join(", ")
+        card.symbols().join(", "),
+        along(card)
     )
 }
 

@@ -21,9 +21,9 @@ pub use worker::answer;
 
 /// Somebody who answers questions, one after the other, and may remember.
 pub trait Worker: Default + 'static {
-    /// What it is asked.
+    /// The question that it answers.
     type Question: Serialize + DeserializeOwned + Send + 'static;
-    /// What it says.
+    /// Its answer.
     type Answer: Serialize + DeserializeOwned + Send + 'static;
     /// Its name, by which the page finds it.
     const NAME: &'static str;
@@ -32,7 +32,7 @@ pub trait Worker: Default + 'static {
     fn answer(&mut self, question: &Self::Question) -> Self::Answer;
 }
 
-/// Is told that an answer has come.
+/// Called when an answer has come.
 pub type Wake = Arc<dyn Fn() + Send + Sync>;
 
 /// A worker at its place.

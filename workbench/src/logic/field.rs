@@ -34,7 +34,7 @@ pub use photo::Photo;
 use photo::Photos;
 use request::{length, request};
 
-/// A measured field and what is said of it, texts as a user writes them.
+/// A measured field and what is stated about it, in the texts of the user.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct FieldQuestion {
     /// The files of the field, or camera images, the first one at rest.
@@ -45,11 +45,11 @@ pub struct FieldQuestion {
     pub card: CardFile,
     /// Thickness at rest, such as `2 mm`.
     pub thickness: String,
-    /// The length of the files' unit or pixel where they do not say it; may be empty.
+    /// The length of the files' unit or pixel where they do not state it; may be empty.
     pub unit: String,
     /// Columns by what they hold, such as `x=x_px,y=y_px,ux=u,uy=v`; may be empty.
     pub columns: String,
-    /// Whether y points down in the files, where that is not as their layout says.
+    /// Whether y points down in the files, if not as usual for their layout.
     pub downwards: Option<bool>,
     /// How far inside of the edge the outermost markers lie; may be empty.
     pub edge_gap: String,
@@ -62,7 +62,7 @@ pub struct FieldQuestion {
 }
 
 impl FieldQuestion {
-    /// Files of which nothing is said yet, to be looked at.
+    /// Files about which nothing is stated yet, to be looked at.
     pub fn of(files: Vec<NamedFile>, card: CardFile) -> Self {
         Self {
             files,
@@ -204,7 +204,7 @@ fn results(
     written::results(&pictures, study, estimates, stem, known, seconds)
 }
 
-/// Everything that `gelbench correct` writes, what it is told of the specimen, and the line that does it again.
+/// Everything that `gelbench correct` writes, the file of what is known of the specimen, and the command line that repeats it.
 ///
 /// # Errors
 /// As of the correction itself.
@@ -302,7 +302,7 @@ fn outlines(mesh: &Mesh) -> Drawing {
     drawing
 }
 
-/// The names of a mesh's edges; the whole boundary is none.
+/// The names of a mesh's edges, without the group of the complete boundary.
 fn edges(mesh: &Mesh) -> Vec<String> {
     let names = mesh.groups().keys().filter(|name| *name != "boundary");
     names.cloned().collect()

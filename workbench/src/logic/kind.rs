@@ -48,7 +48,7 @@ impl Kind {
         }
     }
 
-    /// What is said of a file that nothing reads: what would be read.
+    /// The message about a file that nothing reads: which files would be read.
     pub fn nothing_reads(name: &str) -> String {
         format!(
             "nothing reads {name}. What is read: studies and cards (.toml, UTF-8), tests (.csv, .txt, .tsv, .dat), measured fields \
@@ -72,7 +72,7 @@ impl Kind {
         }
     }
 
-    /// A table that is read as markers is a field; one that says what was tested, or has two columns, is a test.
+    /// A table that is read as markers is a field; one that states what was tested, or has two columns, is a test.
     fn of_table(name: &str, text: &str) -> Self {
         let first = text
             .lines()
@@ -115,7 +115,7 @@ fn is_edge(head: &str) -> bool {
     matches!(names[..], ["x", "y"] | ["x", "y", "line"])
 }
 
-/// Lines by which a table is told: no frame waits for a long one.
+/// Lines by which a table is recognised: no frame waits for a long one.
 const LINES: usize = 300;
 
 /// The first lines of a text.

@@ -31,7 +31,7 @@ pub struct TestFile {
 pub struct FitQuestion {
     /// The files; all are fitted together.
     pub tests: Vec<TestFile>,
-    /// What the files do not say.
+    /// What the files do not state.
     pub reading: Statements,
     /// The law; all laws where there is none.
     pub law: Option<String>,
@@ -57,17 +57,17 @@ pub struct Fitted {
     pub formula: String,
     /// Key, value and uncertainty of every parameter.
     pub parameters: Vec<[String; 3]>,
-    /// √ of the mean square of what is left, in MPa.
+    /// Root mean square of the residuals in MPa.
     pub rmse: f64,
     /// Mean absolute difference in %.
     pub nmad_percent: f64,
-    /// What laws are ranked by.
+    /// Akaike's corrected criterion, by which laws are ranked.
     pub aicc: f64,
     /// Whether it is stable over the data.
     pub stable: bool,
     /// The stretches within which it is stable, test by test.
     pub ranges: Vec<(String, [f64; 2])>,
-    /// What is left over, in a sentence.
+    /// The verdict on the residuals, in a sentence.
     pub verdict: String,
     /// What must be known before it is used.
     pub warnings: Vec<String>,
@@ -138,7 +138,7 @@ fn fit(question: &FitQuestion, tests: &[TestData]) -> Result<Ranking, Error> {
 /// Reads files of test data.
 ///
 /// # Errors
-/// [`Error::Input`] with what is wrong, or what a file does not say and must be stated.
+/// [`Error::Input`] with what is wrong, or what must be stated because a file does not.
 pub fn read(files: &[TestFile], reading: &Statements) -> Result<Vec<TestData>, Error> {
     let each = files.iter();
     each.map(|file| TestData::parse(&file.name, &file.text, reading))

@@ -219,7 +219,7 @@ fn study(question: &StudyQuestion) -> Result<Vec<NamedFile>, Error> {
 /// Files as one archive, as a browser gives them out.
 ///
 /// # Errors
-/// Says why there is none, as where two files have the same name.
+/// Why there is none, such as two files of one name.
 pub fn archive(files: &[NamedFile]) -> Result<Vec<u8>, String> {
     let mut archive = zip::ZipWriter::new(Cursor::new(Vec::new()));
     let options = zip::write::SimpleFileOptions::default();

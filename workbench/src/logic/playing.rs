@@ -45,7 +45,7 @@ impl Playing {
     /// Lets models go from where they are; `damping` is a shear viscosity in MPa·s besides the card's.
     ///
     /// # Errors
-    /// Says what is wrong with the card.
+    /// What is wrong with the card.
     pub fn begin(
         number: u64,
         scene: &Scene,
@@ -133,7 +133,7 @@ impl Playing {
         questions
     }
 
-    /// Takes a piece; those of another motion are put away.
+    /// Takes a piece; those of another motion are ignored.
     pub fn take(&mut self, answer: MotionAnswer) {
         if answer.motion != self.number {
             return;

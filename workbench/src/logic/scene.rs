@@ -68,7 +68,7 @@ pub enum Outline {
 pub enum Model {
     /// The lattice of springs.
     Springs,
-    /// The same nodes, corrected.
+    /// The displacements of the springs, corrected on the same nodes.
     Corrected,
     /// The finite elements that both are compared with.
     Elements,
@@ -224,7 +224,7 @@ impl CardFile {
 }
 
 impl Scene {
-    /// The stretch of the right grip: its way along X over the length.
+    /// The stretch of the right grip: its displacement along X over the length.
     pub fn stretch(&self) -> f64 {
         self.grip.displacement[0] / self.size[0]
     }

@@ -57,7 +57,7 @@ pub struct Shown {
     pub seconds: f64,
 }
 
-/// What decides whether a model is to be solved anew.
+/// The question that a model was solved for; it is solved again for another one.
 #[derive(Clone, Debug, PartialEq)]
 struct Asked {
     scene: Scene,
@@ -78,9 +78,9 @@ pub struct Table {
     deviations: [Option<Deviation>; 2],
     /// Force along X over stretch of each model, by the stretch in ten thousandths.
     curves: [BTreeMap<i64, f64>; 3],
-    /// What the curves were pulled with: motion across and turn.
+    /// Transverse motion and rotation of the grip for which the curves are valid.
     pulled: ([f64; 2], f64),
-    /// What the corrector knew then.
+    /// The conditions of the corrector for which they are valid.
     known: Known,
     numbers: u64,
     oldest: u64,
@@ -180,7 +180,7 @@ impl Table {
         self.sheets
     }
 
-    /// What the last action had to say.
+    /// The message of the last action.
     pub fn message(&self) -> Option<&Fault> {
         self.message.as_ref()
     }
@@ -247,7 +247,7 @@ impl Table {
         (self.scene().look, self.sheets, motion)
     }
 
-    /// Meshes a new sheet; what was found of the old one is put away.
+    /// Meshes a new sheet; the results of the old one are removed.
     fn lay_out(&mut self) {
         let scene = self.scene.now();
         let pulled = ([0.0, scene.grip.displacement[1]], scene.grip.angle);
@@ -340,7 +340,7 @@ impl Table {
         (shown.grip == self.scene().grip).then_some(&shown.solved)
     }
 
-    /// Takes what came of a task; what belongs to another sheet is put away.
+    /// Takes the answer to a task; those of another sheet are ignored.
     pub fn take(&mut self, answer: Answer) {
         if answer.number < self.oldest {
             return;
@@ -368,7 +368,7 @@ impl Table {
         self.compare();
     }
 
-    /// Asks again for what was not answered, as after a stop.
+    /// Ignores answers to the tasks so far, as after a stop.
     pub fn forget_tasks(&mut self) {
         self.oldest = self.numbers + 1;
     }

@@ -96,7 +96,7 @@ pub struct Workbench {
     guided: Option<usize>,
     shows_guide: bool,
     shows_controls: Option<bool>,
-    /// What the program has said last, as of a file that it has written.
+    /// The last message, such as that a file was written.
     pub message: String,
     /// Where the grip is on the screen, in points.
     pub grip_at: Option<egui::Pos2>,
@@ -106,7 +106,7 @@ pub struct Workbench {
 }
 
 impl Workbench {
-    /// With a scene on the table; `context` is told when something was solved.
+    /// With a scene on the table; `context` is asked for a frame when something was solved.
     pub fn new(context: &egui::Context, scene: Scene) -> Self {
         fonts::install(context);
         // A press stays a click where frames are slow; there is no menu that a long touch would open.
@@ -147,7 +147,7 @@ impl Workbench {
         bench
     }
 
-    /// The same, pulling by itself and measuring its frames.
+    /// This workbench, pulling by itself and measuring its frames.
     #[must_use]
     pub fn measuring(self, measure: Measure) -> Self {
         Self {
@@ -293,7 +293,7 @@ impl Workbench {
         matches!(self.tab, Tab::Sheet | Tab::Material)
     }
 
-    /// Stops what is being solved; what is changed next is solved anew.
+    /// Stops all computations; the next change starts a new one.
     fn stop(&mut self) {
         let busy = self.is_busy();
         self.engines.iter_mut().for_each(Background::stop);

@@ -1,4 +1,4 @@
-//! A chart as the library describes it, drawn to be zoomed and asked.
+//! A chart as the library describes it, which can be zoomed and read under the pointer.
 
 use eframe::egui::{Color32, Ui};
 use egui_plot::{Corner, FilledArea, Legend, Line, LineStyle, Plot, PlotPoints, Points, Polygon};
@@ -11,7 +11,7 @@ const LEGEND: f32 = 140.0;
 /// The sum of red, green and blue below which a line is not seen on a dark background.
 const DARK: u16 = 200;
 
-/// Draws a chart of some height; `name` tells it apart from others.
+/// Draws a chart of some height; `name` distinguishes it from others.
 pub fn show(ui: &mut Ui, name: &str, chart: &LineChart, height: f32) {
     let of_x = scaled(chart.x.scale);
     let of_y = scaled(chart.y.scale);

@@ -1,10 +1,10 @@
-//! How closely sheets are looked at: the wheel, two fingers and a pulled background.
+//! The magnification of sheets: the wheel, two fingers and a pulled background.
 
 use eframe::egui::{InputState, Pos2, Response, Ui, Vec2};
 
 use super::surface::View;
 
-/// How much closer than the whole a sheet is looked at, and how far its middle is shifted, in points.
+/// The magnification of a sheet, and the shift of its middle in points.
 #[derive(Clone, Copy, PartialEq)]
 pub struct Closer {
     factor: f32,
@@ -25,12 +25,12 @@ const FACTORS: [f32; 2] = [0.5, 50.0];
 const WHEEL: f32 = 250.0;
 
 impl Closer {
-    /// A view of the whole from there; `middle` is that of the sheet.
+    /// The magnified part of a view of the complete sheet; `middle` is that of the sheet.
     pub fn of(self, full: View, middle: Pos2) -> View {
         full.closer(middle, self.factor, self.shift)
     }
 
-    /// Follows the wheel, two fingers, and the pointer that pulls the background; a double click shows the whole again.
+    /// Follows the wheel, two fingers, and the pointer that pulls the background; a double click shows the complete sheet again.
     pub fn follow(&mut self, ui: &Ui, background: &Response, middle: Pos2) {
         if background.double_clicked() {
             *self = Self::default();

@@ -1,9 +1,9 @@
-//! Colours of values: dark to light, even to the eye and told apart by most people (viridis).
+//! Colours of values: dark to light, even to the eye and distinguished by most people (viridis).
 
 use eframe::egui::Color32;
 use gelbench_report::output::VIRIDIS;
 
-/// What no number is coloured with.
+/// The colour of a value that is no number.
 const GREY: Color32 = Color32::from_rgb(128, 128, 128);
 
 /// The colour of a value within a range.

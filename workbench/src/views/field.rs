@@ -1,4 +1,4 @@
-//! Measured fields: files are dropped, looked at, edges are said, the field is corrected and judged.
+//! Measured fields: files are dropped and looked at, conditions of edges are stated, the field is corrected and judged.
 
 use std::path::Path;
 
@@ -24,7 +24,7 @@ use drawn_edge::DrawnEdge;
 use edges::Asked;
 use photos::Photographs;
 
-/// The width from which what is said and what was found stand side by side.
+/// The width from which statements and results stand side by side.
 const WIDE: f32 = 900.0;
 
 /// How far from an edge or a corner a click may be, in points: as wide as a finger.
@@ -41,11 +41,11 @@ pub struct Fields {
     frame: usize,
     field: usize,
     residuals: bool,
-    /// What was asked last.
+    /// The last question.
     done: Option<FieldQuestion>,
     asked: Asked,
     view: Option<View>,
-    /// What was seen of the files last.
+    /// The last preview of the files.
     seen: Option<Preview>,
     photographs: Photographs,
     /// The edge that is being drawn.
@@ -129,7 +129,7 @@ impl Fields {
         self.corrector.ask(question);
     }
 
-    /// The question without the edges of which nothing is said.
+    /// The question without the edges about which nothing is stated.
     fn stated_question(&self) -> FieldQuestion {
         let mut question = self.question.clone();
         question.edges.retain(|_, edge| *edge != Edge::Unnamed);
@@ -203,12 +203,12 @@ impl Fields {
         offers
     }
 
-    /// What is said of an edge.
+    /// What is stated about an edge.
     pub fn edge(&self, name: &str) -> Option<&Edge> {
         self.question.edges.get(name)
     }
 
-    /// Says what is known of an edge.
+    /// States what is known of an edge.
     pub fn state_edge(&mut self, name: &str, edge: Edge) {
         self.question.edges.insert(name.to_owned(), edge);
     }

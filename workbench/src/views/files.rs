@@ -1,4 +1,4 @@
-//! Files that go out: on the desktop where a dialogue says, in the browser as downloads. What comes of it are events.
+//! Export of files: on the desktop to a path from a dialogue, in the browser as downloads. The results are events.
 
 #[cfg(target_arch = "wasm32")]
 mod browser;
@@ -47,7 +47,7 @@ pub fn plain(name: &str) -> String {
     name.rsplit(['/', '\\']).next().unwrap_or(name).to_owned()
 }
 
-/// The path that a name is, where it is a whole one: names in a browser are none.
+/// A name as a path, where it is an absolute one: names in a browser are not.
 pub fn absolute_path(name: &str) -> Option<PathBuf> {
     let path = Path::new(name);
     path.is_absolute().then(|| path.to_owned())

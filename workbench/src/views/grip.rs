@@ -55,7 +55,7 @@ pub fn within(grip: Grip, scene: &Scene) -> Grip {
     }
 }
 
-/// Draws the grip of a sheet and says what is done to it; `name` tells it apart from those of other models.
+/// Draws the grip of a sheet and returns what is done to it; `name` distinguishes it from those of other models.
 pub fn show(ui: &Ui, scene: &Scene, view: View, name: &str) -> Held {
     let grip = scene.grip;
     let middle = [

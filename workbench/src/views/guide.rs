@@ -125,7 +125,7 @@ fn few_springs_then_climb() -> Scene {
     }
 }
 
-/// Shows the three sentences and the scenes; the number of the one that was chosen. `note` is told where each of them is.
+/// Shows the three sentences and the scenes; the number of the one that was chosen. `note` gets the position of each of them.
 pub fn show(
     ui: &mut Ui,
     current: Option<usize>,

@@ -19,7 +19,7 @@ use crate::logic::report::Report;
 /// Rows of a table that are shown.
 const ROWS: usize = 200;
 
-/// Shows a report with its contents, whose entries lead to its headings; `name` tells its charts apart from those of others.
+/// Shows a report with its contents, whose entries lead to its headings; `name` distinguishes its charts from those of other reports.
 pub fn show(ui: &mut Ui, name: &str, report: &Report) {
     ui.heading(&report.title);
     let (verdict, ink) = if report.passed {
@@ -216,7 +216,7 @@ pub fn mesh(ui: &mut Ui, figure: &MeshFigure) {
     mesh_in(ui, room, figure);
 }
 
-/// The same in a room that has been allocated for it.
+/// Draws a mesh and its edges in a room that has been allocated for them.
 pub fn mesh_in(ui: &Ui, (view, area): (View, Rect), figure: &MeshFigure) {
     let painter = ui.painter().with_clip_rect(area.expand(8.0));
     let faint = Stroke::new(0.5, ui.visuals().text_color().gamma_multiply(0.4));

@@ -56,7 +56,7 @@ impl View {
         }
     }
 
-    /// The same, so many times larger about a place of the screen, then shifted.
+    /// The view magnified by a factor about a position of the screen, then shifted.
     #[must_use]
     pub fn closer(self, about: Pos2, factor: f32, shift: Vec2) -> Self {
         Self {
@@ -65,7 +65,7 @@ impl View {
         }
     }
 
-    /// Where a place in mm is.
+    /// The point of the screen of a position in mm.
     pub fn at(&self, [x, y]: [f64; 2]) -> Pos2 {
         pos2(
             self.origin.x + self.scale * x as f32,
@@ -73,12 +73,12 @@ impl View {
         )
     }
 
-    /// What lies at a place of the screen, in mm.
+    /// The position in mm of a point of the screen.
     pub fn position(&self, on_screen: Pos2) -> [f64; 2] {
         self.vector(on_screen - self.origin)
     }
 
-    /// What a way on the screen is in mm.
+    /// A vector on the screen in mm.
     pub fn vector(&self, on_screen: eframe::egui::Vec2) -> [f64; 2] {
         [on_screen.x, -on_screen.y].map(|length| f64::from(length / self.scale))
     }

@@ -27,7 +27,7 @@ impl<W: Worker> Link<W> {
     }
 
     pub fn send(&mut self, question: W::Question) {
-        // A thread that is gone has broken down: no answer comes, and a stop begins anew.
+        // A thread that is gone has panicked: no answer comes, and after a stop a new one begins.
         drop(self.questions.send(question));
     }
 

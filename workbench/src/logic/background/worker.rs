@@ -48,7 +48,7 @@ impl<W: Worker> Link<W> {
 
     pub fn send(&mut self, question: W::Question) {
         let bytes = postcard::to_stdvec(&question).expect("questions are plain data");
-        // A message that cannot be sent has no answer, and a stop begins anew.
+        // A message that cannot be sent has no answer; after a stop a new worker begins.
         drop(self.worker.post_message(&Uint8Array::from(&bytes[..])));
     }
 

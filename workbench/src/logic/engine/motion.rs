@@ -22,7 +22,7 @@ use crate::logic::scene::{Colour, Model, Scene};
 /// Steps that a piece may take: one of a fine mesh takes some thousands.
 const MOST_STEPS: f64 = 1e7;
 
-/// The density in tonne/mm³ of a card that does not say it: that of water.
+/// The density in tonne/mm³ of a card that does not state it: that of water.
 pub const WATER: f64 = 1e-9;
 
 /// A sheet in motion.
@@ -32,7 +32,7 @@ pub struct MotionState {
     pub time: f64,
     /// ux, uy of node after node in mm.
     pub displacement: Vec<f64>,
-    /// The same of the velocity in mm/s.
+    /// The velocities of node after node in mm/s.
     pub velocity: Vec<f64>,
 }
 

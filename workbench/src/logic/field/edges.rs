@@ -1,4 +1,4 @@
-//! The edges of a measured sheet: what is said of them, and which one lies under the pointer.
+//! The edges of a measured sheet: what is stated about them, and which one lies under the pointer.
 
 use std::collections::BTreeMap;
 
@@ -14,7 +14,7 @@ use super::length;
 /// What is known of an edge.
 #[derive(Clone, Debug, Default, Deserialize, PartialEq, Eq, Serialize)]
 pub enum Edge {
-    /// Nothing is said: the data decide.
+    /// Nothing is stated: the data decide.
     #[default]
     Unnamed,
     /// No traction acts on it.
@@ -50,7 +50,7 @@ impl Edge {
         self.name() == other.name()
     }
 
-    /// What the corrector is told of the edge called `name`; nothing where the data decide.
+    /// The condition of the edge called `name` for the corrector; nothing where the data decide.
     ///
     /// # Errors
     /// [`Error::Input`] where a displacement is no length.

@@ -1,4 +1,4 @@
-//! What a user says of a field, as the library is told it.
+//! The statements of a user about a field as a request to the library.
 
 use std::path::{Path, PathBuf};
 

@@ -1,11 +1,11 @@
-//! What may be said of a field besides its edges: how the command calls it, and how the view does.
+//! What can be stated about a field besides its edges: the option of the command, and the label of the view.
 
 use gelbench::error::Diagnostic;
 
 use super::FieldQuestion;
 use crate::logic::engine::Fault;
 
-/// Something that may be said of a field.
+/// Something that can be stated about a field.
 #[derive(Debug)]
 pub struct Setting {
     /// The option of `gelbench correct`.

@@ -21,12 +21,12 @@ impl Table {
         self.moving.as_ref()
     }
 
-    /// The same, once there is anything to be played: the picture of what was held stays until then.
+    /// The motion that is played, once there is anything to be played: the picture of what was held stays until then.
     pub fn played(&self) -> Option<&Playing> {
         self.moving().filter(|moving| moving.has_begun())
     }
 
-    /// The same, to be stopped, wound and played on.
+    /// The motion, to be stopped, wound and played on.
     pub fn moving_mut(&mut self) -> Option<&mut Playing> {
         self.revision += 1;
         self.moving.as_mut()

@@ -145,7 +145,7 @@ impl Workbench {
         Some(Written { name, files })
     }
 
-    /// Saves what is shown where it was saved before, or where the user says.
+    /// Saves what is shown where it was saved before, or where the user chooses.
     pub(super) fn save(&mut self, tab: Tab, elsewhere: bool) {
         let Some(written) = self.written(tab) else {
             self.message = "`export` saves the corrected field".to_owned();
@@ -217,7 +217,7 @@ impl Workbench {
         tabs.find(|tab| self.is_changed(*tab))
     }
 
-    /// Does something that takes documents away, once the user has said what becomes of their changes.
+    /// Does something that replaces documents, once the user has decided about their changes.
     pub(super) fn leave(&mut self, then: Then) {
         let changed = match &then {
             Then::Close => self.first_changed(),
@@ -280,7 +280,7 @@ impl Workbench {
 
 #[cfg(not(target_arch = "wasm32"))]
 impl Workbench {
-    /// Opens a file of the disk, or says why it cannot be read.
+    /// Opens a file of the disk, or reports why it cannot be read.
     pub fn open_path(&mut self, path: &std::path::Path) {
         let absolute = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
         match std::fs::read(&absolute) {

@@ -204,7 +204,7 @@ impl Workbench {
         }
     }
 
-    /// Whether what the guide says belongs to the view that is shown.
+    /// Whether the text of the guide belongs to the view that is shown.
     pub(super) fn is_guided(&self) -> bool {
         let shows = self.guided.map(|number| SCENES[number].shows);
         self.shows_guide
@@ -215,7 +215,7 @@ impl Workbench {
             }
     }
 
-    /// What the program has to say, until it is read.
+    /// The message of the program, until it is closed.
     pub(super) fn show_message(&mut self, ui: &mut Ui) {
         ui.horizontal_wrapped(|ui| {
             ui.label(&self.message);

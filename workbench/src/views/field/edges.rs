@@ -175,7 +175,7 @@ fn markers(ui: &mut Ui, view: View, area: Rect, preview: &Preview) {
     ui.label(RichText::new(words).small());
 }
 
-/// An edge with what is said of it; thicker where it is pointed at.
+/// An edge with what is stated about it; thicker where it is pointed at.
 fn draw(
     ui: &Ui,
     view: View,

@@ -39,7 +39,7 @@ impl Files {
         });
     }
 
-    /// The same: a browser has no paths.
+    /// Gives files to the user: a browser has no paths.
     pub fn save(&mut self, _: &Path, outgoing: Outgoing) {
         self.give(outgoing);
     }

@@ -1,4 +1,5 @@
-//! Files that go out on the desktop: a dialogue says where, and no file is replaced unasked that the workbench has not written itself.
+//! Export of files on the desktop: a dialogue asks where, and files that the workbench has not written itself are only replaced after a
+//! question.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -88,7 +89,7 @@ impl Files {
         self.show(&Choice::Open, None);
     }
 
-    /// Gives files to the user: one where a dialogue says, several in a folder of their own in the one that is chosen.
+    /// Gives files to the user: one at the path that a dialogue returns, several in a new folder within the one that is chosen.
     pub fn give(&mut self, outgoing: Outgoing) {
         let choice = outgoing.choice();
         self.show(&choice, Some(outgoing));
