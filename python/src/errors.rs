@@ -20,8 +20,8 @@ fn converted(py: Python<'_>, error: &Error) -> PyResult<PyErr> {
     let raised = match error {
         Error::Input(faults) => {
             let class = module.getattr("Fault")?;
-            let described = faults.iter().map(|fault| described(&class, fault));
-            let described = described.collect::<PyResult<Vec<_>>>()?;
+            let descriptions = faults.iter().map(|fault| described(&class, fault));
+            let described = descriptions.collect::<PyResult<Vec<_>>>()?;
             module
                 .getattr("InputError")?
                 .call1((without_warnings(faults).to_string(), described))?
@@ -102,11 +102,11 @@ pub fn choice<T: Copy>(what: &str, name: &str, names: &[(&str, T)]) -> Result<T,
 
 /// A fault of gelbench itself.
 pub fn internal(payload: &(dyn std::any::Any + Send)) -> PyErr {
-    let text = payload
+    let message = payload
         .downcast_ref::<String>()
         .map(String::as_str)
         .or_else(|| payload.downcast_ref::<&str>().copied());
-    let text = text.unwrap_or("unknown");
+    let text = message.unwrap_or("unknown");
     PyRuntimeError::new_err(format!(
         "a fault of gelbench itself, please report it: {text}"
     ))

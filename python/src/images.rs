@@ -72,8 +72,8 @@ impl ImageOptions {
             let message = format!("subset_shape `{}` is not known", self.subset_shape);
             input(message, "use affine or quadratic")
         })?;
-        let frames = self.frames.into_iter().enumerate();
-        let frames = frames.map(|(number, image)| image.file(&format!("images[{number}]")));
+        let numbered = self.frames.into_iter().enumerate();
+        let frames = numbered.map(|(number, image)| image.file(&format!("images[{number}]")));
         Ok(ImageSettings {
             subsets: Settings {
                 spacing: self.spacing,

@@ -120,8 +120,8 @@ impl Options {
 /// The length of a unit, or of a pixel, in mm.
 pub fn length_unit(text: &str) -> Result<f64, Error> {
     let named = units::factor(text, Dimension::Length);
-    let factor = named.or_else(|_| units::parse(text, Dimension::Length));
-    let factor = factor.map_err(|fault| refused(format!("unit: \"{text}\" {fault}")))?;
+    let read = named.or_else(|_| units::parse(text, Dimension::Length));
+    let factor = read.map_err(|fault| refused(format!("unit: \"{text}\" {fault}")))?;
     if factor > 0.0 {
         return Ok(factor);
     }

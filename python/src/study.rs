@@ -267,8 +267,8 @@ pub fn quantity(py: Python<'_>, text: &str, unit: &str) -> PyResult<f64> {
         ("s", Dimension::Time),
         ("rad", Dimension::Angle),
     ];
-    let dimension = known.iter().find(|(name, _)| *name == unit);
-    let dimension = dimension.map_or(Dimension::Ratio, |(_, dimension)| *dimension);
+    let entry = known.iter().find(|(name, _)| *name == unit);
+    let dimension = entry.map_or(Dimension::Ratio, |(_, dimension)| *dimension);
     units::parse(text, dimension)
         .map_err(|fault| exception(py, &refused(format!("\"{text}\": {fault}"))))
 }

@@ -150,11 +150,11 @@ impl Sweep {
             let attend = || watch.check();
             let mut table = SweepTable::of(&self.sweep, Vec::new());
             let Some(folder) = folder else {
-                let share_runs = self.runs.iter().filter(|run| match share {
+                let in_share = self.runs.iter().filter(|run| match share {
                     Share::Shard(shard) => shard.holds(run),
                     _ => true,
                 });
-                let share_runs: Vec<Run> = share_runs.cloned().collect();
+                let share_runs: Vec<Run> = in_share.cloned().collect();
                 let keep = |row: &Row| {
                     ended(row.number);
                     Ok(())

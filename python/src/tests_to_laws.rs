@@ -59,8 +59,8 @@ pub fn fit(
             // What relaxes or softens is the whole record.
             reading.entry("cycle".into()).or_insert("all".into());
         }
-        let read = tests.iter();
-        let read = read.map(|(name, table)| TestData::parse(name, table, &reading));
+        let tables = tests.iter();
+        let read = tables.map(|(name, table)| TestData::parse(name, table, &reading));
         let tests_read = read.collect::<Result<Vec<_>, Error>>()?;
         let settings = FitSettings {
             weighting: chosen("weighting", weighting, &Weighting::NAMES)?,

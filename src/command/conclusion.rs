@@ -46,13 +46,13 @@ pub fn moved_into_place(folder: ResultFolder, results: &Results) -> Result<Strin
 
 /// The results for a terminal: the headline, where the page is, how far all agree, and where the files are.
 fn printed(results: &Results, files: usize, folder: &Path) -> String {
-    let parts = [
+    let all = [
         results.headline(),
         open_page(folder),
         results.agreement(),
         format!("{files} files in {}\n", folder.display()),
     ];
-    let parts: Vec<String> = parts.into_iter().filter(|part| !part.is_empty()).collect();
+    let parts: Vec<String> = all.into_iter().filter(|part| !part.is_empty()).collect();
     parts.join("\n")
 }
 

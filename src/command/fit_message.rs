@@ -74,8 +74,8 @@ fn protocols(fit: &Fit) -> String {
     let Some(protocols) = &fit.protocols else {
         return String::new();
     };
-    let each = protocols.left_out_percent.iter();
-    let each: Vec<String> = each.map(|percent| format!("{percent:.2}")).collect();
+    let percents = protocols.left_out_percent.iter();
+    let each: Vec<String> = percents.map(|percent| format!("{percent:.2}")).collect();
     let mut text = format!(
         "  left out     each protocol is predicted by the law fitted to the others to {} % of the largest stress\n",
         each.join(", ")

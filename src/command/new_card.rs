@@ -126,8 +126,8 @@ impl NewCard {
         let parameters = self.parameters.iter();
         let parameters = parameters.map(|(key, value)| format!("{key} = {value}"));
         let mut forms = FORMS.iter();
-        let form = forms.find(|(_, form)| self.convention == Some(*form));
-        let form = form.map(|(name, _)| format!("convention {name}"));
+        let chosen = forms.find(|(_, form)| self.convention == Some(*form));
+        let form = chosen.map(|(name, _)| format!("convention {name}"));
         moduli
             .chain(parameters)
             .chain(form)

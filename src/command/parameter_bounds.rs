@@ -27,8 +27,8 @@ impl ParameterBounds {
 
 /// A key with a value, as an option states it.
 pub fn pair(text: &str) -> Result<(String, String), Diagnostic> {
-    let parts = text.split_once('=');
-    let parts = parts.map(|(key, value)| (key.trim(), value.trim()));
+    let split = text.split_once('=');
+    let parts = split.map(|(key, value)| (key.trim(), value.trim()));
     match parts {
         Some((key, value)) if !key.is_empty() && !value.is_empty() => {
             Ok((key.to_owned(), value.to_owned()))

@@ -41,8 +41,8 @@ pub struct StyleOptions {
 
 /// The size of letters, as studies bound it.
 fn font_size(text: &str) -> Result<f64, String> {
-    let size = text.trim_end_matches("pt").trim().parse();
-    let size = size.ok().filter(|size| (5.0..=12.0).contains(size));
+    let number = text.trim_end_matches("pt").trim().parse();
+    let size = number.ok().filter(|size| (5.0..=12.0).contains(size));
     size.ok_or_else(|| "must be a number of points from 5 to 12, such as 9".to_owned())
 }
 

@@ -56,8 +56,8 @@ pub fn columns_of_errors() -> Option<usize> {
 fn columns(terminal: Option<(terminal_size::Width, terminal_size::Height)>) -> Option<usize> {
     /// Narrower lines cannot be read.
     const LEAST: usize = 20;
-    let stated = std::env::var("COLUMNS").ok();
-    let stated = stated.and_then(|columns| columns.trim().parse().ok());
+    let variable = std::env::var("COLUMNS").ok();
+    let stated = variable.and_then(|columns| columns.trim().parse().ok());
     let known = stated.or(terminal.map(|(width, _)| usize::from(width.0)));
     known
         .filter(|columns| *columns > 0)

@@ -66,8 +66,8 @@ impl FittedParameters {
         let parameters = fit["parameters"].as_array();
         let parameters = parameters.ok_or_else(|| wrong("contains no `parameters`"))?;
         // What was held and not fitted has no uncertainty.
-        let fitted = parameters.iter().enumerate();
-        let fitted = fitted.filter(|(_, one)| one["held"] != true);
+        let numbered = parameters.iter().enumerate();
+        let fitted = numbered.filter(|(_, one)| one["held"] != true);
         let (indices, parameters): (Vec<usize>, Vec<Value>) =
             fitted.map(|(index, one)| (index, one.clone())).unzip();
         let parameters = &parameters[..];

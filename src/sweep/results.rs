@@ -66,10 +66,10 @@ impl Statistics {
         sorted.sort_by(f64::total_cmp);
         let keys = rows.first().map_or(0, |row| row.settings.len());
         let correlation = |key: usize| {
-            let settings = column
+            let values_of_key = column
                 .iter()
                 .map(|(index, _)| rows[*index].settings[key].value());
-            let settings: Option<Vec<f64>> = settings.collect();
+            let settings: Option<Vec<f64>> = values_of_key.collect();
             let enough = settings.filter(|settings| settings.len() >= FEWEST);
             enough.map_or(f64::NAN, |settings| rank_correlation(&settings, &values))
         };

@@ -96,10 +96,10 @@ fn together<'a>(
     folder: &mut ResultFolder,
     progress: &Progress,
 ) -> Vec<EstimatedFrame<'a>> {
-    let kept = frames
+    let records = frames
         .iter()
         .map(|frame| folder.kept(&frame.number.to_string()));
-    let kept: Vec<Option<FieldEstimate>> = kept.collect();
+    let kept: Vec<Option<FieldEstimate>> = records.collect();
     let pairs = frames.iter().zip(&kept);
     let others: Vec<&Frame> = pairs
         .filter_map(|(frame, kept)| kept.is_none().then_some(frame))

@@ -194,8 +194,8 @@ impl Options {
             &self.forces,
             &self.rest,
         ];
-        let named = others.into_iter().flatten().cloned();
-        let named = named.chain(self.images.mask());
+        let files = others.into_iter().flatten().cloned();
+        let named = files.chain(self.images.mask());
         let card = PathBuf::from(&self.material);
         self.fields
             .iter()

@@ -43,8 +43,8 @@ fn conditions(options: &Options) -> Result<Conditions, Error> {
         None => Conditions::default(),
     };
     let free = options.free.iter().map(|name| (name, EdgeCondition::Free));
-    let rigid = options.rigid.iter();
-    let rigid = rigid.map(|name| (name, EdgeCondition::Rigid));
+    let names = options.rigid.iter();
+    let rigid = names.map(|name| (name, EdgeCondition::Rigid));
     let edges = free.chain(rigid);
     conditions
         .edges

@@ -62,8 +62,8 @@ fn on_an_edge<'a>(
 ) -> Result<(&'a str, usize, String, Option<f64>), Diagnostic> {
     // Names of edges may have blanks, and so may what acts there.
     let axis = |axis: &str| text.find(axis).map(|at| (at, at + axis.len()));
-    let axes = [axis(" x "), axis(" y ")].into_iter().enumerate();
-    let axes = axes.filter_map(|(axis, place)| Some((place?, axis)));
+    let positions = [axis(" x "), axis(" y ")].into_iter().enumerate();
+    let axes = positions.filter_map(|(axis, place)| Some((place?, axis)));
     let Some(((end, begin), axis)) = axes.min().filter(|((end, _), _)| *end > 0) else {
         let hint = format!("write edge, axis and force, as in \"{example}\"");
         return Err(Diagnostic::error("", "it is not a force on an edge").hint(hint));

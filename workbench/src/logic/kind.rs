@@ -110,8 +110,8 @@ impl Kind {
 /// Whether the head of a table is that of lines: x, y, and nothing but the number of the line beside them.
 fn is_edge(head: &str) -> bool {
     let without_unit = |name: &str| plain_name(name.split('[').next().unwrap_or_default());
-    let names: Vec<String> = head.split([',', ';', '\t']).map(without_unit).collect();
-    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    let plain: Vec<String> = head.split([',', ';', '\t']).map(without_unit).collect();
+    let names: Vec<&str> = plain.iter().map(String::as_str).collect();
     matches!(names[..], ["x", "y"] | ["x", "y", "line"])
 }
 

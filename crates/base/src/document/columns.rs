@@ -172,8 +172,8 @@ impl Above {
         let is_head = |line: &Vec<String>| line.iter().all(|field| is_name(unquoted(field)));
         let of_width = |line: &Vec<String>| Some(line.len()) == width;
         let leading = lines.iter().take_while(|line| is_head(line)).count();
-        let first_row = lines.iter().position(|line| of_width(line) && is_row(line));
-        let first_row = first_row.unwrap_or(leading);
+        let row_of_numbers = lines.iter().position(|line| of_width(line) && is_row(line));
+        let first_row = row_of_numbers.unwrap_or(leading);
         let above = lines[..first_row].iter().rev();
         let heads = above.take_while(|line| of_width(line) && (is_head(line) || is_units(line)));
         let count = heads.count();

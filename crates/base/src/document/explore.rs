@@ -168,8 +168,8 @@ fn value(key: &Key) -> Value {
     let example = example
         .or_else(|| takes.map(Takes::example))
         .unwrap_or_default();
-    let parsed = format!("value = {example}").parse::<Table>().ok();
-    let parsed = parsed.and_then(|mut table| table.remove("value"));
+    let document = format!("value = {example}").parse::<Table>().ok();
+    let parsed = document.and_then(|mut table| table.remove("value"));
     match takes {
         Some(Takes::Section) => Value::Table(Table::new()),
         Some(Takes::Sections) => Value::Array(vec![Value::Table(Table::new())]),

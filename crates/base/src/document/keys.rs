@@ -117,11 +117,11 @@ pub(super) fn note(keys: &mut Vec<Key>, key: Key) {
             known.example = known.example.take().or(key.example);
             // A choice is read as a text too.
             let is_choice = matches!(known.takes.first(), Some(Takes::Choice(_)));
-            let new = key
+            let others = key
                 .takes
                 .into_iter()
                 .filter(|one| !(known.takes.contains(one) || is_choice && *one == Takes::Text));
-            let new: Vec<Takes> = new.collect();
+            let new: Vec<Takes> = others.collect();
             known.takes.extend(new);
         }
     }

@@ -69,8 +69,8 @@ pub(super) fn visible(text: &str, position: Range<usize>) -> Range<usize> {
 /// The value without quotes that contains a place, and the key before it with its equals sign.
 fn unquoted(text: &str, at: usize) -> Option<(String, &str)> {
     let start = text.get(..at)?.rfind('\n').map_or(0, |end| end + 1);
-    let line = text[start..].lines().next().unwrap_or_default();
-    let line = line.split('#').next().unwrap_or_default();
+    let with_remark = text[start..].lines().next().unwrap_or_default();
+    let line = with_remark.split('#').next().unwrap_or_default();
     let within = at - start;
     let (key, values) = line.split_once('=')?;
     let offset = key.len() + 1;

@@ -161,8 +161,8 @@ fn fields(grid: &Grid) -> Value {
 
 fn model(series: &GridSeries, shown: &[f64]) -> Value {
     let grid = &series.grids[0].grid;
-    let points = grid.points.iter().flatten();
-    let points: Vec<u8> = points.flat_map(|at| (*at as f32).to_le_bytes()).collect();
+    let xy = grid.points.iter().flatten();
+    let points: Vec<u8> = xy.flat_map(|at| (*at as f32).to_le_bytes()).collect();
     let triangles: Vec<u8> = triangles(grid).flat_map(u32::to_le_bytes).collect();
     let at = |time: &f64| series.grids.iter().find(|step| step.time == Some(*time));
     let steps = shown

@@ -72,8 +72,8 @@ impl Edge {
         let displacements = match self {
             Self::Unnamed => return None,
             Self::Known(axes) => {
-                let stated = ["ux", "uy"].into_iter().zip(axes);
-                let stated = stated.filter(|(_, text)| !text.trim().is_empty());
+                let components = ["ux", "uy"].into_iter().zip(axes);
+                let stated = components.filter(|(_, text)| !text.trim().is_empty());
                 stated
                     .map(|(key, text)| format!("{key} = {}\n", quoted(text.trim())))
                     .collect()

@@ -91,8 +91,8 @@ impl Workbench {
             .into_iter()
             .filter_map(|model| moving.fault(model).cloned())
             .collect();
-        let strayed = Model::ALL.map(|model| 100.0 * moving.energy_error(model));
-        let strayed = strayed.into_iter().fold(0.0, f64::max);
+        let errors = Model::ALL.map(|model| 100.0 * moving.energy_error(model));
+        let strayed = errors.into_iter().fold(0.0, f64::max);
         let mut wound = false;
         ui.horizontal_wrapped(|ui| {
             let word = if running { "pause" } else { "play" };

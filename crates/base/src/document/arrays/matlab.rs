@@ -141,8 +141,8 @@ impl<'a> Elements<'a> {
             13 => (8, 'u'),
             _ => return Err(damaged()),
         };
-        let numbers = data.chunks_exact(size);
-        let numbers = numbers.map(|bytes| number(kind, bytes, self.big_endian));
+        let values = data.chunks_exact(size);
+        let numbers = values.map(|bytes| number(kind, bytes, self.big_endian));
         Ok(numbers.collect())
     }
 }
@@ -174,8 +174,8 @@ fn matrix(
     let (_, written) = elements.next()?;
     let name = name.unwrap_or_else(|| text(written));
     let mut sizes = shape.iter();
-    let count = sizes.try_fold(1_usize, |all, size| all.checked_mul(*size));
-    let count = count.ok_or_else(damaged)?;
+    let product = sizes.try_fold(1_usize, |all, size| all.checked_mul(*size));
+    let count = product.ok_or_else(damaged)?;
     match class {
         STRUCTURE if depth > 0 && count == 1 => return structure(elements, &name, depth, all),
         STRUCTURE => return Ok(()),

@@ -35,11 +35,11 @@ pub fn array(name: String, bytes: &[u8]) -> Result<Array, Unconvertible> {
     let tokens = tokens(std::str::from_utf8(head).map_err(|_| damaged("its head is no text"))?);
     let fields = fields(value(&tokens, "descr").ok_or_else(|| damaged("it names no type"))?)?;
     let shape = value(&tokens, "shape").ok_or_else(|| damaged("it names no shape"))?;
-    let shape = shape
+    let sizes = shape
         .iter()
         .take_while(|token| *token != ")")
         .filter_map(|token| token.parse().ok());
-    let shape: Vec<usize> = shape.collect();
+    let shape: Vec<usize> = sizes.collect();
     let is_transposed = value(&tokens, "fortran_order").is_some_and(|value| value[0] == "True");
     let size: usize = fields.iter().map(|field| field.size).sum();
     let entries = shape

@@ -87,8 +87,8 @@ pub(super) fn count_pair(value: &DeValue<'_>, low: usize, high: usize) -> Option
     let DeValue::Array(items) = value else {
         return None;
     };
-    let numbers = items.iter().map(|item| whole_number(item.get_ref()));
-    let numbers: Vec<usize> = numbers.collect::<Option<_>>()?;
+    let parsed = items.iter().map(|item| whole_number(item.get_ref()));
+    let numbers: Vec<usize> = parsed.collect::<Option<_>>()?;
     let inside = numbers.iter().all(|n| (low..=high).contains(n));
     inside.then(|| numbers.try_into().ok()).flatten()
 }

@@ -192,8 +192,8 @@ impl Scene<'_> {
             let damping = viscosity * spring.area / spring.rest_length;
             format!("{one} {two} {stiffness} {damping} {}", spring.rest_length)
         };
-        let all: Vec<String> = springs.iter().enumerate().map(spring).collect();
-        let all = all.join("  ");
+        let lines: Vec<String> = springs.iter().enumerate().map(spring).collect();
+        let all = lines.join("  ");
         file.empty(
             "SpringForceField",
             &[("name", "springs"), PLANE, ("spring", &all)],

@@ -53,8 +53,8 @@ impl Names {
         };
         let numbered = (2..).map(|number| format!("{plain}_{number}"));
         let mut wishes = std::iter::once(plain.clone()).chain(numbered);
-        let name = wishes.find(|name| !self.0.contains(name));
-        let name = name.expect("numbers do not end");
+        let free = wishes.find(|name| !self.0.contains(name));
+        let name = free.expect("numbers do not end");
         self.0.insert(name.clone());
         name
     }
@@ -74,8 +74,8 @@ pub fn ascii(text: &str) -> String {
 
 /// A number in at most 20 characters, of which CalculiX reads no more, to twelve digits at least.
 pub fn number(value: f64) -> String {
-    let short = [format!("{value}"), format!("{value:e}")];
-    let short = short.into_iter().find(|text| text.len() <= 17);
+    let forms = [format!("{value}"), format!("{value:e}")];
+    let short = forms.into_iter().find(|text| text.len() <= 17);
     short.unwrap_or_else(|| format!("{value:.11e}"))
 }
 

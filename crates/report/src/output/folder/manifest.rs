@@ -96,8 +96,8 @@ impl Locked {
         let path = folder.join(MANIFEST);
         let mut options = File::options();
         let options = options.read(true).write(true).create(true).truncate(false);
-        let file = options.open(&path);
-        let file = file.map_err(|cause| Error::write(&path, cause))?;
+        let opened = options.open(&path);
+        let file = opened.map_err(|cause| Error::write(&path, cause))?;
         match file.try_lock() {
             // Some file systems know no locks; two runs at once are then the user's own care.
             Ok(()) | Err(TryLockError::Error(_)) => Ok(Self {

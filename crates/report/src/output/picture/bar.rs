@@ -87,8 +87,8 @@ impl Bar {
             self.words.push((words, at, Align::Centre));
             y += line;
         }
-        let widest = extremes.iter().flatten().map(|(words, _)| width(words));
-        let widest = widest.fold(0.0, f64::max);
+        let widths = extremes.iter().flatten().map(|(words, _)| width(words));
+        let widest = widths.fold(0.0, f64::max);
         let is_one_row = 2.0 * (widest + APART) + width(quantity) <= right - left;
         let mut row = if is_one_row { first } else { y };
         let both: f64 = extremes

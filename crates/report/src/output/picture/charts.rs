@@ -101,8 +101,8 @@ impl<'a> Plan<'a> {
                 Scaled::new(&chart.y, limits, ticks, *height, look)
             })
             .collect();
-        let left = verticals.iter().map(|axis| axis_width(axis, look));
-        let left = left.fold(0.0, f64::max);
+        let widths = verticals.iter().map(|axis| axis_width(axis, look));
+        let left = widths.fold(0.0, f64::max);
         let mut frames: Vec<Frame> = Vec::new();
         let mut top = EDGE;
         let parts = charts.iter().zip(verticals).zip(heights).zip(ranges);
@@ -166,8 +166,8 @@ fn shared_ranges(charts: &[(LineChart, u32)]) -> Vec<[f64; 2]> {
 
 /// Places the names that stand below the last chart of those with a common axis; the upper end of what is below them.
 fn place_below(frames: &mut [Frame], top: f64) -> f64 {
-    let alike = frames.iter().rev().skip(1);
-    let alike = alike.take_while(|frame| frame.is_above_its_like).count();
+    let above = frames.iter().rev().skip(1);
+    let alike = above.take_while(|frame| frame.is_above_its_like).count();
     let last = frames.len() - 1;
     let mut bottom = top - GAP;
     for frame in &mut frames[last - alike..last] {
@@ -239,8 +239,8 @@ impl<'a> Frame<'a> {
         let is_free = |part: &Rectangle| {
             let part = part.grown(6.0);
             drawn.iter().all(|(is_joined, pixels)| {
-                let pieces = pixels.windows(2).filter(|_| *is_joined);
-                let pieces = pieces.map(|piece| [piece[0], piece[1]]);
+                let pairs = pixels.windows(2).filter(|_| *is_joined);
+                let pieces = pairs.map(|piece| [piece[0], piece[1]]);
                 let points = pixels.iter().map(|pixel| [*pixel; 2]);
                 !pieces.chain(points).any(|piece| part.meets(piece))
             })

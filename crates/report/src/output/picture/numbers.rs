@@ -130,8 +130,8 @@ impl Ticks {
 /// Round positions within a range, at most so many but three at least.
 fn even(range: [f64; 2], most: usize) -> Vec<f64> {
     let about = |about: usize| round_positions(range, about as f64);
-    let few = (FEWEST..=most).rev().map(about);
-    let mut few = few.filter(|positions| (FEWEST..=most).contains(&positions.len()));
+    let choices = (FEWEST..=most).rev().map(about);
+    let mut few = choices.filter(|positions| (FEWEST..=most).contains(&positions.len()));
     let more = || {
         (FEWEST..20)
             .map(about)

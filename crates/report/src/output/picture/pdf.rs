@@ -217,11 +217,11 @@ fn follow(content: &mut Content, path: &Path) {
 fn write_words(content: &mut Content, words: &Words, covers: &mut Covers) {
     let [(regular, _), (bold, _)] = FONTS;
     let font = &Face::of(words.letters).font;
-    let glyphs = words
+    let bytes = words
         .words
         .chars()
         .flat_map(|letter| font.glyph_id(letter).0.to_be_bytes());
-    let glyphs: Vec<u8> = glyphs.collect();
+    let glyphs: Vec<u8> = bytes.collect();
     let [x, y] = words.start().map(|end| end as f32);
     covers.set(content, 255);
     fill_with(content, words.colour);

@@ -29,7 +29,7 @@ pub fn compressed(array: &str) -> Option<String> {
         sizes.push(blocks.len() - start);
     }
     let last = values.chunks(BLOCK).next_back().map_or(0, <[u8]>::len);
-    let head = [sizes.len(), BLOCK, last].into_iter().chain(sizes);
-    let head: Vec<u8> = head.flat_map(|size| (size as u64).to_le_bytes()).collect();
+    let all = [sizes.len(), BLOCK, last].into_iter().chain(sizes);
+    let head: Vec<u8> = all.flat_map(|size| (size as u64).to_le_bytes()).collect();
     Some(STANDARD.encode(head) + &STANDARD.encode(blocks))
 }

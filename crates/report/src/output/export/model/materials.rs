@@ -29,8 +29,8 @@ impl<'a> PartMaterial<'a> {
             .chain(regions)
             .zip(0..)
         {
-            let cells = 0..given.mesh.cell_count();
-            let cells: Vec<usize> = cells.filter(|cell| laws.number(*cell) == number).collect();
+            let range = 0..given.mesh.cell_count();
+            let cells: Vec<usize> = range.filter(|cell| laws.number(*cell) == number).collect();
             if cells.is_empty() {
                 continue;
             }

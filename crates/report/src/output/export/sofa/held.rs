@@ -85,10 +85,10 @@ impl Held {
                 // Without the sign of a zero.
                 moved.unwrap_or(0.0) + 0.0
             };
-            let path = times
+            let positions = times
                 .factors()
                 .map(|factor| [0, 1].map(|axis| at(axis, factor)));
-            let path: Vec<[f64; 2]> = path.collect();
+            let path: Vec<[f64; 2]> = positions.collect();
             let bits = path.iter().map(|moved| moved.map(f64::to_bits)).collect();
             let motion = alike.entry((axes, bits)).or_insert(Self {
                 nodes: Vec::new(),
@@ -126,8 +126,8 @@ impl Held {
                 ],
             ),
         };
-        let attributes = [PLANE, ("indices", &*nodes)];
-        let attributes = attributes.iter().chain(more).copied();
+        let first = [PLANE, ("indices", &*nodes)];
+        let attributes = first.iter().chain(more).copied();
         file.empty(name, &attributes.collect::<Vec<_>>());
     }
 }
