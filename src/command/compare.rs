@@ -10,8 +10,8 @@ mod doubts;
 
 use doubts::doubts;
 
+use super::arguments::Large;
 use super::interrupt;
-use super::large::Large;
 use super::progress::{Progress, report_files};
 use super::terminal::{Outcome, Printed, print, print_report, warn};
 use crate::kinds;

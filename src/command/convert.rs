@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 
-use super::choice::one_of;
+use super::arguments::one_of;
 use super::terminal::{Outcome, print, print_data, save, warn};
 use super::test_reading::ReadingArguments;
 use gelbench_calibration::calibration::{Conversion, StrainColumn, TestData};

@@ -4,8 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
-use super::choice::one_of;
-use super::large::Large;
+use super::arguments::{Large, one_of};
 use super::terminal::{Outcome, print, save, warn, warn_texts};
 use crate::kinds;
 use gelbench_base::error::Error;

@@ -6,7 +6,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{ArgGroup, Args};
 use serde_json::Value;
 
-use super::choice::one_of;
+use super::arguments::one_of;
 use super::parameter_bounds::{ParameterBounds, bounds};
 use super::pictures::StyleOptions;
 use super::progress::{Progress, report_files};

@@ -5,11 +5,10 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
-use super::choice::one_of;
+use super::arguments::{Large, one_of};
 use super::correct::exit_code;
 use super::fit::add_law;
 use super::interrupt;
-use super::large::Large;
 use super::pictures::StyleOptions;
 use super::progress::{Progress, report_files};
 use super::terminal::{Outcome, Printed, print, print_report, save, warn, warn_texts};

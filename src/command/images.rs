@@ -5,11 +5,10 @@ use std::time::Instant;
 
 use clap::Args;
 
-use super::choice::one_of;
+use super::arguments::{Large, one_of};
 use super::conclusion::finish;
 use super::correct::values::unit;
 use super::interrupt;
-use super::large::Large;
 use super::progress::Progress;
 use super::terminal::{Outcome, Printed, warn};
 use gelbench_images::images::{ImageFile, Order, Settings, list};

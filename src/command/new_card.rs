@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{ArgAction, Args};
 
-use super::choice::one_of;
+use super::arguments::one_of;
 use super::fit::{a_law, shipped};
 use super::message::along;
 use super::parameter_bounds::pair;

@@ -2,7 +2,7 @@
 
 use clap::Args;
 
-use crate::command::choice::one_of;
+use crate::command::arguments::one_of;
 use gelbench_report::results::{
     Palette, PictureFormat, PictureStyle, PictureWidth, SheetField, ShownFields,
 };

@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 
+use super::arguments::Large;
 use super::conclusion::open_page;
 use super::interrupt;
-use super::large::Large;
 use super::progress::{Progress, report_files};
 use super::terminal::{Outcome, Printed, print, print_report, warn, warn_texts};
 use crate::sweep::{

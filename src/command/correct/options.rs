@@ -8,9 +8,8 @@ use super::values::{CELLS, HOLES, PLACES, Y_AXIS};
 use super::values::{
     encoding, force, force_column, gap, interval, length, region, scale_error, size, time, unit,
 };
-use crate::command::choice::one_of;
+use crate::command::arguments::{Large, one_of};
 use crate::command::images::ImageOptions;
-use crate::command::large::Large;
 use crate::command::pictures::PictureOptions;
 use crate::command::terminal::Printed;
 use gelbench_base::document::TextEncoding;

@@ -13,6 +13,7 @@ use gelbench::output::{self, vtk};
 use gelbench::results::{Drawing, Grid, Sheet};
 use gelbench::studies::Progress;
 use gelbench_base::document::name_of;
+use gelbench_report::results::models::MODELS;
 use gelbench_report::results::{FieldFigure, LineChart, Panel, PictureFormat, PictureStyle};
 
 use super::background::Worker;
@@ -137,11 +138,7 @@ fn lines(chart: &LineChart) -> String {
 
 /// The name of a model in names of files, as `gelbench run` has it.
 fn file_name(model: Model) -> &'static str {
-    match model {
-        Model::Springs => "mass_spring",
-        Model::Corrected => "corrected",
-        Model::Elements => "finite_element",
-    }
+    MODELS[model as usize].key
 }
 
 fn grids(scene: &Scene, fields: &[ShownField]) -> Result<Vec<NamedFile>, Error> {

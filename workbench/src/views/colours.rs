@@ -1,6 +1,7 @@
 //! Colours of values: dark to light, even to the eye and distinguished by most people (viridis).
 
 use eframe::egui::Color32;
+use gelbench_base::statistics::extremes;
 use gelbench_report::output::VIRIDIS;
 
 /// The colour of a value that is no number.
@@ -25,11 +26,8 @@ pub fn colour(value: f64, [low, high]: [f64; 2]) -> Color32 {
 
 /// The least and the largest of some numbers; nothing where there are none.
 pub fn range(values: impl IntoIterator<Item = f64>) -> Option<[f64; 2]> {
-    let finite = values.into_iter().filter(|value| value.is_finite());
-    finite.fold(None, |range, value| match range {
-        None => Some([value; 2]),
-        Some([low, high]) => Some([f64::min(low, value), f64::max(high, value)]),
-    })
+    let [low, high] = extremes(values.into_iter().filter(|value| value.is_finite()));
+    (low <= high).then_some([low, high])
 }
 
 /// What a scale of colours spans.
