@@ -244,7 +244,7 @@ fn a_study_that_was_written_is_not_lost_to_another_one() {
         state_mut(&mut bench).open("motion.toml", motion);
         bench.step();
         choose(&mut bench, answer);
-        assert_eq!(state(&bench).studies.text().contains("# mine"), is_mine);
+        assert_eq!(state(&bench).studies.text.contains("# mine"), is_mine);
     }
     assert!(!state(&bench).is_changed(Tab::Study));
 }
@@ -269,7 +269,7 @@ fn keys_in_the_view_of_studies_save_and_take_back_nothing_of_the_sheet() {
         press(&mut bench, Modifiers::COMMAND, key);
     }
     assert_eq!(*state(&bench).table.scene(), pulled);
-    assert_eq!(folder.text("study.toml"), state(&bench).studies.text());
+    assert_eq!(folder.text("study.toml"), state(&bench).studies.text);
     state_mut(&mut bench).tab = Tab::Sheet;
     bench.step();
     for key in [Key::Z, Key::S] {

@@ -38,7 +38,7 @@ fn place_of(bench: &Bench, edge: &str) -> Pos2 {
     };
     let group = figure.groups.iter().find(|group| group.name == edge);
     let middle = middle(&group.unwrap().lines).unwrap();
-    let view = state(bench).fields.view().unwrap();
+    let view = state(bench).fields.view.unwrap();
     view.at(middle)
 }
 
@@ -61,7 +61,7 @@ fn click(bench: &mut Bench, at: Pos2) {
 }
 
 fn statement_of(bench: &Bench, edge: &str) -> Edge {
-    state(bench).fields.edge(edge).unwrap().clone()
+    state(bench).fields.question.edges[edge].clone()
 }
 
 #[test]
@@ -107,9 +107,9 @@ fn a_known_edge_takes_its_displacement_and_a_wrong_one_is_told() {
     bench.step();
     bench.step();
     assert!(matches!(statement_of(&bench, "left"), Edge::Known(_)));
-    state_mut(&mut bench)
-        .fields
-        .state_edge("left", Edge::Known(["nothing".into(), String::new()]));
+    let known = Edge::Known(["nothing".into(), String::new()]);
+    let edges = &mut state_mut(&mut bench).fields.question.edges;
+    edges.insert("left".to_owned(), known);
     click(&mut bench, Pos2::new(1390.0, 990.0));
     bench.get_by_label("correct").click();
     bench.step();
@@ -181,8 +181,8 @@ fn photographs(edge: Option<&[u8]>) -> Bench {
 fn two_photographs_and_an_edge_lead_to_force_and_stress() {
     let mut bench = photographs(Some(include_bytes!("../../examples/gel_edge.csv")));
     for edge in ["top", "bottom"] {
-        let fields = &mut state_mut(&mut bench).fields;
-        fields.state_edge(edge, Edge::Free);
+        let edges = &mut state_mut(&mut bench).fields.question.edges;
+        edges.insert(edge.to_owned(), Edge::Free);
     }
     bench.get_by_label("correct").click();
     bench.step();
@@ -219,7 +219,7 @@ fn the_edge_may_be_drawn_on_the_first_photograph() {
     bench.step();
     let [left, right, bottom, top] = [1.0, 16.0, 1.95, 9.95];
     let corners = [[left, top], [right, top], [right, bottom], [left, bottom]];
-    let view = state(&bench).fields.view().unwrap();
+    let view = state(&bench).fields.view.unwrap();
     // One corner too many is taken back.
     let clicks = corners[..3].iter().chain([&[18.0, 6.0]]);
     for corner in clicks {

@@ -182,7 +182,7 @@ fn a_dropped_file_that_nothing_reads_says_what_would_be() {
             "{message}"
         );
         assert_eq!(state(&bench).tab, Tab::Sheet, "nothing else happens");
-        assert!(state(&bench).studies.files().is_empty());
+        assert!(state(&bench).studies.files.is_empty());
         assert!(bench.query_by_label_contains(name).is_some());
     }
 }
@@ -193,11 +193,11 @@ fn the_points_of_a_dropped_test_are_drawn_at_once() {
     let test = include_bytes!("../../materials/data/treloar_1944_uniaxial.csv");
     state_mut(&mut bench).open("treloar_1944_uniaxial.csv", test);
     bench.step();
-    until(&mut bench, |bench| bench.materials.seen().is_some());
+    until(&mut bench, |bench| bench.materials.seen.is_some());
     bench.run_steps(2);
     let materials = &state(&bench).materials;
     assert!(materials.ranking().is_none(), "nothing was fitted");
-    let lines = &materials.seen().unwrap().lines;
+    let lines = &materials.seen.as_ref().unwrap().lines;
     assert_eq!(lines.len(), 1);
     assert!(lines[0].points.len() > 20 && lines[0].stroke == Stroke::Points);
     let chart = bench.get_by_label_contains("as they were read").rect();

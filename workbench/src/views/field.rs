@@ -35,7 +35,8 @@ const EXAMPLE: &[u8] = include_bytes!("../../../examples/measured_plate.csv");
 
 /// The state of the view.
 pub struct Fields {
-    question: FieldQuestion,
+    /// The files, and what is stated about them.
+    pub question: FieldQuestion,
     corrector: Background<FieldCorrector>,
     answer: Option<Result<FieldAnswer, Fault>>,
     frame: usize,
@@ -44,7 +45,8 @@ pub struct Fields {
     /// The last question.
     done: Option<FieldQuestion>,
     asked: Asked,
-    view: Option<View>,
+    /// Where the mesh was drawn last.
+    pub view: Option<View>,
     /// The last preview of the files.
     seen: Option<Preview>,
     photographs: Photographs,
@@ -201,21 +203,6 @@ impl Fields {
         }
         offers.extend(exports::pictures("the mesh", "mesh", &preview.drawing));
         offers
-    }
-
-    /// What is stated about an edge.
-    pub fn edge(&self, name: &str) -> Option<&Edge> {
-        self.question.edges.get(name)
-    }
-
-    /// States what is known of an edge.
-    pub fn state_edge(&mut self, name: &str, edge: Edge) {
-        self.question.edges.insert(name.to_owned(), edge);
-    }
-
-    /// Where the mesh was drawn last.
-    pub fn view(&self) -> Option<View> {
-        self.view
     }
 
     /// Shows the view; a file of the results that shall go out.

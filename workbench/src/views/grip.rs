@@ -20,18 +20,6 @@ pub struct Held {
     pub at: Pos2,
 }
 
-impl Held {
-    /// Nothing was done to a grip at a place of the screen.
-    pub fn nothing(at: Pos2) -> Self {
-        Self {
-            to: None,
-            holding: false,
-            released: false,
-            at,
-        }
-    }
-}
-
 /// Half the thickness of the bar, the distance of the knob from its end, and the least size of what is taken by a finger.
 const BAR: f32 = 5.0;
 const KNOB: f32 = 16.0;

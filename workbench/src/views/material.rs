@@ -25,7 +25,7 @@ pub struct Materials {
     ranking: Option<Result<Ranking, Fault>>,
     chosen: usize,
     /// The points of the tests, as they were read last.
-    seen: Option<LineChart>,
+    pub seen: Option<LineChart>,
     /// The card that the curves are of, as it was read last.
     read: Option<(CardFile, Result<Card, Fault>)>,
 }
@@ -118,11 +118,6 @@ impl Materials {
             }
         }
         offers
-    }
-
-    /// The points of the tests, once they were read.
-    pub fn seen(&self) -> Option<&LineChart> {
-        self.seen.as_ref()
     }
 
     /// Shows the view; whether the card shall be saved.

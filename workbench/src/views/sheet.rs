@@ -98,7 +98,12 @@ impl Sheets {
             label(&position, *model, row_area.min + vec2(6.0, 4.0 + line));
             let view = position.view;
             if table.played().is_some() {
-                held = Some(Held::nothing(view.at([table.scene().size[0], 0.0])));
+                held = Some(Held {
+                    to: None,
+                    holding: false,
+                    released: false,
+                    at: view.at([table.scene().size[0], 0.0]),
+                });
             } else if number == 0 || !over {
                 let mut inside = ui.new_child(UiBuilder::new().max_rect(row_area));
                 inside.shrink_clip_rect(row_area);

@@ -17,8 +17,10 @@ use crate::logic::studies::{NamedFile, Runner, StudyQuestion};
 /// The state of the view.
 pub struct Studies {
     name: String,
-    text: String,
-    files: Vec<NamedFile>,
+    /// The text as it is in the editor.
+    pub text: String,
+    /// The files that the study may name.
+    pub files: Vec<NamedFile>,
     runner: Background<Runner>,
     report: Option<Result<Report, Fault>>,
     /// Whether the report has just come, and is scrolled to.
@@ -62,11 +64,6 @@ impl Studies {
         self.files.push((name, content));
     }
 
-    /// The files that are known.
-    pub fn files(&self) -> &[NamedFile] {
-        &self.files
-    }
-
     /// Takes what was computed.
     pub fn receive(&mut self) {
         if let Some(answer) = self.runner.answers().pop() {
@@ -106,11 +103,6 @@ impl Studies {
             ));
         }
         offers
-    }
-
-    /// The text as it is in the editor.
-    pub fn text(&self) -> &str {
-        &self.text
     }
 
     /// The study as a file.

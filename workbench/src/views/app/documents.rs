@@ -104,7 +104,7 @@ impl Workbench {
     fn text(&self, tab: Tab) -> Option<String> {
         match tab {
             Tab::Sheet => Some(self.table.scene().study()),
-            Tab::Study => Some(self.studies.text().to_owned()),
+            Tab::Study => Some(self.studies.text.clone()),
             // A card of the user's own stands in the study of the sheet.
             Tab::Material | Tab::Field => None,
         }
