@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use gelbench::document::{TextEncoding, with_files};
 use gelbench::error::Error;
+use gelbench::estimation::FieldEstimate;
 use gelbench::markers::{ChosenColumns, Frame, ReadSettings};
 use gelbench::material::Card;
 use gelbench::mesh::{CellShape, Exemptions, MeshReading};
@@ -198,28 +199,33 @@ pub fn correct(
         let seconds = start.elapsed().as_secs_f64();
         let pictures = Pictures::default();
         let results = written::results(&pictures, &study, &estimates, name, known, seconds);
-        let mut of_frames = OfFrames {
-            series: SERIES
-                .map(|name| GridSeries {
-                    name: name.to_owned(),
-                    grids: Vec::new(),
-                })
-                .to_vec(),
-            tables: Vec::new(),
-        };
-        for (frame, estimate) in study.series.frames.iter().zip(&estimates) {
-            let frame_files = FrameFiles::new(&study, frame, estimate);
-            for (series, grid) in of_frames.series.iter_mut().zip(frame_files.grids) {
-                series.grids.push(grid);
-            }
-            of_frames.tables.extend(frame_files.tables);
-        }
         let file = files.into_iter().next().unwrap_or_default();
         let answer = worst_answer(&estimates).words().to_owned();
         let returned = Results {
-            of_frames,
+            of_frames: of_frames(&study, &estimates),
             ..Results::new(results, file)
         };
         Ok((returned, answer))
     })
+}
+
+/// Fields and tables of all frames.
+fn of_frames(study: &MarkerStudy, estimates: &[FieldEstimate]) -> OfFrames {
+    let mut of_frames = OfFrames {
+        series: SERIES
+            .map(|name| GridSeries {
+                name: name.to_owned(),
+                grids: Vec::new(),
+            })
+            .to_vec(),
+        tables: Vec::new(),
+    };
+    for (frame, estimate) in study.series.frames.iter().zip(estimates) {
+        let frame_files = FrameFiles::new(study, frame, estimate);
+        for (series, grid) in of_frames.series.iter_mut().zip(frame_files.grids) {
+            series.grids.push(grid);
+        }
+        of_frames.tables.extend(frame_files.tables);
+    }
+    of_frames
 }

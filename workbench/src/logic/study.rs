@@ -184,7 +184,36 @@ fn of_specimen(read: Specimen) -> Result<Scene, Error> {
             return Err(other("the specimen is a mesh from a file"));
         }
     };
-    let (outline, size) = match shape {
+    let between_grips = outline_of(shape);
+    let (outline, size) =
+        between_grips.ok_or_else(|| other("the specimen is not held by two grips"))?;
+    let grip = grip_of(&read.problem.supports).filter(|_| read.problem.loads.is_empty());
+    let grip = grip.ok_or_else(|| {
+        other("the specimen must have a clamp `left` and a rigid grip `right`, and no other supports or loads")
+    })?;
+    let along = (size[0] / size[1] * across as f64).round() as usize;
+    let last = match read.along {
+        Along::Stretch => read.factors.last().copied().unwrap_or(0.0),
+        Along::LoadFactor => 1.0,
+    };
+    let grip = Grip {
+        displacement: grip.displacement.map(|u| last * u),
+        ..grip
+    };
+    Ok(Scene {
+        outline,
+        size,
+        thickness: read.problem.thickness,
+        cells: cells.unwrap_or([along.next_multiple_of(2).max(2), across]),
+        card: card_file(read.card),
+        grip,
+        look: Scene::default().look,
+    })
+}
+
+/// The outline of a shape between two grips, with its length and width.
+fn outline_of(shape: Shape) -> Option<(Outline, [f64; 2])> {
+    Some(match shape {
         Shape::Strip { size } => (Outline::Plate, size),
         Shape::StripWithHole { size, radius } => {
             let diameter = 2.0 * radius;
@@ -211,30 +240,8 @@ fn of_specimen(read: Specimen) -> Result<Scene, Error> {
             size,
         ),
         Shape::RingSector { .. } | Shape::SquareOnRakes(_) | Shape::Cruciform { .. } => {
-            return Err(other("the specimen is not held by two grips"));
+            return None;
         }
-    };
-    let grip = grip_of(&read.problem.supports).filter(|_| read.problem.loads.is_empty());
-    let grip = grip.ok_or_else(|| {
-        other("the specimen must have a clamp `left` and a rigid grip `right`, and no other supports or loads")
-    })?;
-    let along = (size[0] / size[1] * across as f64).round() as usize;
-    let last = match read.along {
-        Along::Stretch => read.factors.last().copied().unwrap_or(0.0),
-        Along::LoadFactor => 1.0,
-    };
-    let grip = Grip {
-        displacement: grip.displacement.map(|u| last * u),
-        ..grip
-    };
-    Ok(Scene {
-        outline,
-        size,
-        thickness: read.problem.thickness,
-        cells: cells.unwrap_or([along.next_multiple_of(2).max(2), across]),
-        card: card_file(read.card),
-        grip,
-        look: Scene::default().look,
     })
 }
 

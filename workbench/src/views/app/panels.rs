@@ -84,29 +84,7 @@ impl Workbench {
             self.positions
                 .insert("export".to_owned(), export.rect.center());
             ui.separator();
-            let dark = ui.visuals().dark_mode;
-            let other = if dark { "light" } else { "dark" };
-            if ui
-                .button(other)
-                .on_hover_text(format!("{other} background"))
-                .clicked()
-            {
-                ui.ctx()
-                    .set_theme(if dark { Theme::Light } else { Theme::Dark });
-            }
-            let zoom = ui.ctx().zoom_factor();
-            let known = TEXT_SIZES.iter().find(|(_, factor)| *factor == zoom);
-            let shown = known.map_or("other", |(name, _)| name);
-            egui::ComboBox::from_label("text")
-                .selected_text(shown)
-                .width(70.0)
-                .show_ui(ui, |ui| {
-                    for (name, factor) in TEXT_SIZES {
-                        if ui.selectable_label(zoom == factor, name).clicked() {
-                            ui.ctx().set_zoom_factor(factor);
-                        }
-                    }
-                });
+            appearance(ui);
             if self.is_busy() {
                 ui.separator();
                 if ui.button("stop").on_hover_text("Escape").clicked() {
@@ -295,4 +273,31 @@ impl Workbench {
             ui.vertical(|ui| figures::table(ui, &self.table));
         });
     }
+}
+
+/// The choice of the background and of the size of texts.
+fn appearance(ui: &mut Ui) {
+    let (other, theme) = if ui.visuals().dark_mode {
+        ("light", Theme::Light)
+    } else {
+        ("dark", Theme::Dark)
+    };
+    let button = ui
+        .button(other)
+        .on_hover_text(format!("{other} background"));
+    if button.clicked() {
+        ui.ctx().set_theme(theme);
+    }
+    let zoom = ui.ctx().zoom_factor();
+    let known = TEXT_SIZES.iter().find(|(_, factor)| *factor == zoom);
+    egui::ComboBox::from_label("text")
+        .selected_text(known.map_or("other", |(name, _)| name))
+        .width(70.0)
+        .show_ui(ui, |ui| {
+            for (name, factor) in TEXT_SIZES {
+                if ui.selectable_label(zoom == factor, name).clicked() {
+                    ui.ctx().set_zoom_factor(factor);
+                }
+            }
+        });
 }

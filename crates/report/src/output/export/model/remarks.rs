@@ -13,29 +13,8 @@ const SMALL: f64 = 0.1;
 impl Model<'_> {
     /// Where the file differs from the study, in ASCII.
     pub fn remarks(&self) -> Vec<String> {
-        let mut remarks = Vec::new();
         let code = self.code.name();
-        let shapes = |shape| {
-            self.cells
-                .iter()
-                .any(|(cell_shape, _)| *cell_shape == shape)
-        };
-        let nine = (0..self.given.mesh.cell_count())
-            .any(|cell| self.given.mesh.shape(cell) == CellShape::Quad9);
-        if nine && shapes(CellShape::Quad8) {
-            remarks.push(
-                "nine-node quadrilaterals are exported as eight-node ones, without their middle nodes"
-                    .into(),
-            );
-        }
-        if self.code == Code::CalculiX
-            && self
-                .cells
-                .iter()
-                .any(|(cell_shape, _)| cell_shape.degree() == 1)
-        {
-            remarks.push("CalculiX turns CPS3 and CPS4 into linear solids of its own: compare quadratic elements, or fine meshes".into());
-        }
+        let mut remarks = self.of_cells();
         for material in self.materials.iter().filter(|_| self.code != Code::Abaqus) {
             let of = match self.materials.len() {
                 1 => String::new(),
@@ -123,7 +102,26 @@ impl Model<'_> {
         (high[0] - low[0]).min(high[1] - low[1])
     }
 
-    /// What a layer of solids makes of a sheet.
+    /// Where the cells differ.
+    fn of_cells(&self) -> Vec<String> {
+        let mut remarks = Vec::new();
+        let has =
+            |is_one: fn(CellShape) -> bool| self.cells.iter().any(|(shape, _)| is_one(*shape));
+        let mesh = self.given.mesh;
+        let nine = (0..mesh.cell_count()).any(|cell| mesh.shape(cell) == CellShape::Quad9);
+        if nine && has(|shape| shape == CellShape::Quad8) {
+            remarks.push(
+                "nine-node quadrilaterals are exported as eight-node ones, without their middle nodes"
+                    .into(),
+            );
+        }
+        if self.code == Code::CalculiX && has(|shape| shape.degree() == 1) {
+            remarks.push("CalculiX turns CPS3 and CPS4 into linear solids of its own: compare quadratic elements, or fine meshes".into());
+        }
+        remarks
+    }
+
+    /// The differences between a layer of solids and a sheet.
     fn of_solids(&self) -> Vec<String> {
         let (code, thickness) = (self.code.name(), self.given.problem.thickness);
         let mut remarks = Vec::new();
