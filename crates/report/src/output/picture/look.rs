@@ -11,78 +11,43 @@ const MILLIMETRES: f64 = 0.2125;
 const COLOURS: usize = 256;
 
 /// ColorBrewer's `RdBu`, blue first: readable with every colour vision.
-const BLUE_TO_RED: [Colour; 11] = [
-    [5, 48, 97],
-    [33, 102, 172],
-    [67, 147, 195],
-    [146, 197, 222],
-    [209, 229, 240],
-    [247, 247, 247],
-    [253, 219, 199],
-    [244, 165, 130],
-    [214, 96, 77],
-    [178, 24, 43],
-    [103, 0, 31],
-];
+const BLUE_TO_RED: [Colour; 11] = colours([
+    0x053061, 0x2166ac, 0x4393c3, 0x92c5de, 0xd1e5f0, 0xf7f7f7, 0xfddbc7, 0xf4a582, 0xd6604d,
+    0xb2182b, 0x67001f,
+]);
 
 /// `cividis`: from blue over grey to yellow, lighter and lighter.
-const BLUE_TO_YELLOW: [Colour; 9] = [
-    [0, 34, 78],
-    [26, 56, 111],
-    [66, 78, 108],
-    [95, 99, 110],
-    [124, 123, 120],
-    [155, 147, 117],
-    [187, 173, 108],
-    [221, 201, 88],
-    [254, 232, 56],
-];
+const BLUE_TO_YELLOW: [Colour; 9] = colours([
+    0x00224e, 0x1a386f, 0x424e6c, 0x5f636e, 0x7c7b78, 0x9b9375, 0xbbad6c, 0xddc958, 0xfee838,
+]);
 
 /// `viridis`: from violet over green to yellow, lighter and lighter.
-pub const VIRIDIS: [Colour; 9] = [
-    [68, 1, 84],
-    [71, 44, 122],
-    [59, 81, 139],
-    [44, 113, 142],
-    [33, 144, 141],
-    [39, 173, 129],
-    [92, 200, 99],
-    [170, 220, 50],
-    [253, 231, 37],
-];
+pub const VIRIDIS: [Colour; 9] = colours([
+    0x440154, 0x472c7a, 0x3b518b, 0x2c718e, 0x21908d, 0x27ad81, 0x5cc863, 0xaadc32, 0xfde725,
+]);
 
 /// ColorBrewer's `YlGnBu`: the paper's colour for little, dark for much.
-const LIGHT_TO_DARK: [Colour; 9] = [
-    [255, 255, 217],
-    [237, 248, 177],
-    [199, 233, 180],
-    [127, 205, 187],
-    [65, 182, 196],
-    [29, 145, 192],
-    [34, 94, 168],
-    [37, 52, 148],
-    [8, 29, 88],
-];
+const LIGHT_TO_DARK: [Colour; 9] = colours([
+    0xffffd9, 0xedf8b1, 0xc7e9b4, 0x7fcdbb, 0x41b6c4, 0x1d91c0, 0x225ea8, 0x253494, 0x081d58,
+]);
 
 /// The colours of lines on black, in the order of [`PALETTE`]: Okabe's and Ito's, the darker ones lighter.
-const ON_BLACK: [[u8; 3]; 6] = [
-    [86, 160, 240],
-    [255, 120, 40],
-    [0, 190, 140],
-    [225, 150, 195],
-    [240, 220, 90],
-    [150, 215, 245],
-];
+const ON_BLACK: [Colour; 6] = colours([0x56a0f0, 0xff7828, 0x00be8c, 0xe196c3, 0xf0dc5a, 0x96d7f5]);
 
 /// The colours of lines that even a printer without colours tells apart.
-const PRINTED: [[u8; 3]; 6] = [
-    [0, 68, 120],
-    [176, 58, 0],
-    [70, 150, 110],
-    [70, 10, 60],
-    [240, 205, 120],
-    [155, 168, 235],
-];
+const PRINTED: [Colour; 6] = colours([0x004478, 0xb03a00, 0x46966e, 0x460a3c, 0xf0cd78, 0x9ba8eb]);
+
+/// Colours from their hexadecimal numbers.
+const fn colours<const N: usize>(numbers: [u32; N]) -> [Colour; N] {
+    let mut all = [[0; 3]; N];
+    let mut index = 0;
+    while index < N {
+        let [_, red, green, blue] = numbers[index].to_be_bytes();
+        all[index] = [red, green, blue];
+        index += 1;
+    }
+    all
+}
 
 /// How a picture looks.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -149,7 +114,7 @@ impl Look {
     }
 
     /// A colour on black or on white paper.
-    fn tone(self, on_black: [u8; 3], on_white: [u8; 3]) -> Colour {
+    fn tone(self, on_black: Colour, on_white: Colour) -> Colour {
         if self.is_dark() { on_black } else { on_white }
     }
 
@@ -179,7 +144,7 @@ impl Look {
     }
 
     /// A line's colour, which the data give for white paper.
-    pub fn line(self, colour: [u8; 3]) -> Colour {
+    pub fn line(self, colour: Colour) -> Colour {
         let table = match self.palette {
             Palette::Default => PALETTE,
             Palette::Dark => ON_BLACK,
@@ -195,17 +160,17 @@ impl Look {
     }
 
     /// The colour of a line as an area has it: mixed with the paper.
-    pub fn area(self, colour: [u8; 3]) -> Colour {
+    pub fn area(self, colour: Colour) -> Colour {
         self.mixed(colour, 4)
     }
 
     /// The colour of an area beside another one of the same line's colour.
-    pub fn darker_area(self, colour: [u8; 3]) -> Colour {
+    pub fn darker_area(self, colour: Colour) -> Colour {
         self.mixed(colour, 2)
     }
 
     /// One part in so many of a line's colour, the others of the paper's.
-    fn mixed(self, colour: [u8; 3], parts: i32) -> Colour {
+    fn mixed(self, colour: Colour, parts: i32) -> Colour {
         let (line, paper) = (self.line(colour), self.paper());
         [0, 1, 2].map(|part| {
             let (line, paper) = (i32::from(line[part]), i32::from(paper[part]));
@@ -273,7 +238,10 @@ mod tests {
         })
     }
 
-    const ALL: [Palette; 3] = [Palette::Default, Palette::Dark, Palette::Print];
+    fn combinations() -> impl Iterator<Item = (Palette, Vision)> {
+        let palettes = [Palette::Default, Palette::Dark, Palette::Print].into_iter();
+        palettes.flat_map(|palette| Vision::ALL.map(|vision| (palette, vision)))
+    }
 
     /// From every 32nd part of a bar to the next; what is smaller is rounding.
     fn rises(lightness: &[f64]) -> bool {
@@ -284,10 +252,7 @@ mod tests {
 
     #[test]
     fn one_signed_bars_change_their_lightness_in_one_direction_for_every_vision() {
-        for (palette, vision) in ALL
-            .iter()
-            .flat_map(|all| Vision::ALL.map(|one| (*all, one)))
-        {
+        for (palette, vision) in combinations() {
             let bar = look(palette).bar(false);
             let mut light: Vec<f64> = bar.iter().map(|one| lightness(vision.seen(*one))).collect();
             if light[0] > light[255] {
@@ -300,10 +265,7 @@ mod tests {
 
     #[test]
     fn bars_of_both_signs_get_lighter_towards_zero_and_their_sides_differ_or_rise_throughout() {
-        for (palette, vision) in ALL
-            .iter()
-            .flat_map(|all| Vision::ALL.map(|one| (*all, one)))
-        {
+        for (palette, vision) in combinations() {
             let bar = look(palette).bar(true);
             let seen: Vec<_> = bar.iter().map(|one| vision.seen(*one)).collect();
             let light: Vec<f64> = seen.iter().map(|one| lightness(*one)).collect();
@@ -325,10 +287,7 @@ mod tests {
 
     #[test]
     fn lines_differ_from_one_another_and_from_the_paper_for_every_vision() {
-        for (palette, vision) in ALL
-            .iter()
-            .flat_map(|all| Vision::ALL.map(|one| (*all, one)))
-        {
+        for (palette, vision) in combinations() {
             if vision == Vision::Grey && palette != Palette::Print {
                 continue;
             }
