@@ -317,8 +317,9 @@ fn run_studies(studies: &[PathBuf], folder: Option<&Path>, budget: Budget) -> Ou
 fn run_study(path: &Path, folder: Option<PathBuf>, budget: Budget) -> Outcome {
     let mut ready = kinds::read(path, budget)?;
     let usual = || Path::new("output").join(name(path));
-    let folder = folder.or_else(|| ready.output.folder.clone());
-    let folder = folder.unwrap_or_else(usual);
+    let folder = folder
+        .or_else(|| ready.output.folder.clone())
+        .unwrap_or_else(usual);
     let identity = interrupt::identity(&format!("{path:?} {budget:?}"));
     let results_folder = ResultFolder::resume(&folder, "run", &[path], &identity)?;
     interrupt::guard(&results_folder);

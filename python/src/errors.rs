@@ -43,9 +43,11 @@ fn converted(py: Python<'_>, error: &Error) -> PyResult<PyErr> {
 
 /// The faults that must be mended; warnings are among the attributes of the exception.
 fn without_warnings(faults: &[Diagnostic]) -> Error {
-    let errors = faults.iter();
-    let errors = errors.filter(|fault| fault.severity == Severity::Error);
-    let errors: Vec<Diagnostic> = errors.cloned().collect();
+    let errors: Vec<Diagnostic> = faults
+        .iter()
+        .filter(|fault| fault.severity == Severity::Error)
+        .cloned()
+        .collect();
     Error::Input(if errors.is_empty() {
         faults.to_vec()
     } else {

@@ -79,9 +79,10 @@ impl Results {
     }
 
     fn grid(&self, series: usize, number: usize) -> PyResult<&NamedGrid> {
-        let grid = self.series().get(series);
-        let grid = grid.and_then(|series| series.grids.get(number));
-        grid.ok_or_else(|| PyIndexError::new_err("there is no such field"))
+        self.series()
+            .get(series)
+            .and_then(|series| series.grids.get(number))
+            .ok_or_else(|| PyIndexError::new_err("there is no such field"))
     }
 }
 
@@ -166,8 +167,10 @@ impl Results {
 
     /// A picture as a PNG.
     fn picture<'py>(&self, py: Python<'py>, number: usize) -> PyResult<Bound<'py, PyBytes>> {
-        let figure = self.results.outcome.figures.get(number);
-        let figure = figure.ok_or_else(|| PyIndexError::new_err("there is no such picture"))?;
+        let figures = &self.results.outcome.figures;
+        let figure = figures
+            .get(number)
+            .ok_or_else(|| PyIndexError::new_err("there is no such picture"))?;
         let picture = raised(py, py.detach(|| drawn(&figure.drawing)))?;
         Ok(PyBytes::new(py, &picture))
     }

@@ -88,12 +88,13 @@ pub fn run<T: Send>(
     }
 }
 
-type Ended<T> = Result<Result<T, Error>, Box<dyn Any + Send>>;
+/// What a piece of work computes, or the payload of its panic.
+type Computed<T> = Result<Result<T, Error>, Box<dyn Any + Send>>;
 
 fn in_thread<T: Send>(
     watch: &Arc<Watch>,
     work: impl FnOnce(&Arc<Watch>) -> Result<T, Error> + Send,
-) -> Ended<T> {
+) -> Computed<T> {
     scope(|scope| {
         let (sender, ended) = channel();
         let body = move || {

@@ -65,9 +65,11 @@ impl Solution {
         sheet
             .warnings
             .extend(model.warnings.iter().map(ToString::to_string));
-        let ends = model.ends.iter();
-        let ends = ends.map(|end| exception(py, end).into_value(py).into_any());
-        let ends = ends.collect();
+        let ends = model
+            .ends
+            .iter()
+            .map(|end| exception(py, end).into_value(py).into_any())
+            .collect();
         let solution = model.solution;
         let at_groups: Vec<Vec<GroupState>> = (0..solution.reached())
             .map(|step| solution.groups(step).unwrap_or_default().to_vec())

@@ -156,8 +156,8 @@ impl GivenMesh {
             data.nodes.insert(name, numbers(members.as_slice()?)?);
         }
         for (name, pairs) in lines {
-            let ends = numbers(pairs.as_slice()?)?;
-            let ends = ends.chunks_exact(2).map(|ends| [ends[0], ends[1]]);
+            let points = numbers(pairs.as_slice()?)?;
+            let ends = points.chunks_exact(2).map(|ends| [ends[0], ends[1]]);
             data.lines.insert(name, ends.collect());
         }
         Ok(Self(data))

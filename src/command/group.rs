@@ -159,8 +159,8 @@ fn message(groups: &[NamedGroup]) -> String {
             values(&entry.mean.parameters)
         );
     }
-    let axes = groups[0].states.iter().map(|state| state.axis).max();
-    let axes = axes.map_or(1, |last| last + 1);
+    let last_axis = groups[0].states.iter().map(|state| state.axis).max();
+    let axes = last_axis.map_or(1, |last| last + 1);
     let steps = usize::from(Group::STEPS);
     // The middle and the end of each protocol.
     let rows = (0..groups[0].states.len()).filter(|row| {

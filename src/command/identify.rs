@@ -100,10 +100,9 @@ pub fn run(options: Options) -> Outcome {
         ("mass", options.mass),
         ("length", options.length),
         ("area", options.area),
-    ];
-    let given = given
-        .into_iter()
-        .filter_map(|(key, value)| Some((key.to_owned(), value?)));
+    ]
+    .into_iter()
+    .filter_map(|(key, value)| Some((key.to_owned(), value?)));
     let recording = Recording::read(&path, &given.collect())?;
     check_size(&path, &recording, options.large.budget())?;
     let settings = IdentificationSettings {

@@ -134,8 +134,9 @@ fn show(name: &str) -> Outcome {
 
 fn plot(name: &str, file: Option<PathBuf>) -> Outcome {
     let card = load(name)?;
-    let stem = Path::new(name.strip_suffix(".toml").unwrap_or(name)).file_name();
-    let stem = stem.map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
+    let stem = Path::new(name.strip_suffix(".toml").unwrap_or(name))
+        .file_name()
+        .map_or_else(String::new, |stem| stem.to_string_lossy().into_owned());
     let file =
         file.unwrap_or_else(|| Path::new("output/materials").join(format!("{stem}_curves.png")));
     output::refuse_inputs(&file, &[Path::new(name)])?;

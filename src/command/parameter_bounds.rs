@@ -65,11 +65,11 @@ fn stated(pairs: &[(String, String)]) -> Result<Bounds, Error> {
     let each = pairs.iter().map(|(key, text)| {
         let value = dimensions
             .iter()
-            .find_map(|dimension| units::parse(text, *dimension).ok());
-        let value = value.ok_or_else(|| {
-            let hint = "such as angle=\"30 deg\", mu=\"2 kPa\" or k2=0.8";
-            Error::input(format!("the value `{text}` of {key} cannot be read"), hint)
-        })?;
+            .find_map(|dimension| units::parse(text, *dimension).ok())
+            .ok_or_else(|| {
+                let hint = "such as angle=\"30 deg\", mu=\"2 kPa\" or k2=0.8";
+                Error::input(format!("the value `{text}` of {key} cannot be read"), hint)
+            })?;
         Ok((key.clone(), [value; 2]))
     });
     together(each)

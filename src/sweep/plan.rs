@@ -117,8 +117,8 @@ impl FittedParameters {
     }
 
     fn at(&self, point: &[f64]) -> Vec<Setting> {
-        let normal = point.iter().map(|share| normal_quantile(*share));
-        let normal = DVector::from_iterator(self.values.len(), normal);
+        let quantiles = point.iter().map(|share| normal_quantile(*share));
+        let normal = DVector::from_iterator(self.values.len(), quantiles);
         let values = &self.values + &self.factor * normal;
         let units = self.units.iter().cloned();
         values

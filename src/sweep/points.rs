@@ -61,12 +61,13 @@ impl Points {
             let message = format!("{}: {}", path.display(), fault.message);
             Error::Input(vec![Diagnostic { message, ..fault }])
         };
-        let records = read_records(bytes).filter(|records| !records.is_empty());
-        let records = records.ok_or_else(|| {
-            let fault =
-                Diagnostic::error("", "is not a comma-separated table with one line of heads");
-            named(fault.hint(Points::HINT))
-        })?;
+        let records = read_records(bytes)
+            .filter(|records| !records.is_empty())
+            .ok_or_else(|| {
+                let fault =
+                    Diagnostic::error("", "is not a comma-separated table with one line of heads");
+                named(fault.hint(Points::HINT))
+            })?;
         let (head, lines) = (&records[0], &records[1..]);
         let column = |position: usize| {
             let values = lines.iter().map(|line| line[position].trim().to_owned());

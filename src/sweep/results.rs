@@ -262,8 +262,9 @@ pub fn figures(keys: &[String], rows: &[Row], along: Steps) -> Vec<Figure> {
         )
     });
     let rows = at_last_step(rows);
-    let last = statistics(&rows);
-    let last = (last.iter()).find(|one| is_force(&one.name) && one.name.starts_with("corrected"));
+    let at_last = statistics(&rows);
+    let last =
+        (at_last.iter()).find(|one| is_force(&one.name) && one.name.starts_with("corrected"));
     let over = last.into_iter().flat_map(|one| {
         let at = along.describe(parts_of(&one.name).1);
         let rows = &rows;

@@ -123,8 +123,9 @@ impl Variable {
 impl Values {
     fn parse(text: &str) -> Result<Self, String> {
         // `..` in a path is no range.
-        let range = text.split_once("..");
-        let range = range.filter(|(low, _)| !low.is_empty() && !low.contains(['/', '\\', '"']));
+        let range = text
+            .split_once("..")
+            .filter(|(low, _)| !low.is_empty() && !low.contains(['/', '\\', '"']));
         if let Some((low, rest)) = range {
             let (high, count) = match rest.rsplit_once(':') {
                 Some((high, count)) => (high, Some(count)),

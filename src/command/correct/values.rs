@@ -36,8 +36,7 @@ pub fn region(text: &str) -> Result<(String, Card), Diagnostic> {
         let hint = "write the region and its card, as in \"inclusion=pva-10\"";
         Diagnostic::error("", "it is not a card for a region").hint(hint)
     })?;
-    let card = Card::load(card.trim(), Path::new("."));
-    let card = card.map_err(|fault| match fault {
+    let card = Card::load(card.trim(), Path::new(".")).map_err(|fault| match fault {
         Error::Input(mut faults) if !faults.is_empty() => faults.swap_remove(0),
         other => Diagnostic::error("", other.to_string()),
     })?;

@@ -76,8 +76,8 @@ impl Kind {
     fn of_table(name: &str, text: &str) -> Self {
         let first = text
             .lines()
-            .find(|line| !line.trim_start().starts_with('#'));
-        let first = first.unwrap_or_default();
+            .find(|line| !line.trim_start().starts_with('#'))
+            .unwrap_or_default();
         if is_edge(first) {
             return Self::Edge;
         }

@@ -187,8 +187,8 @@ fn of_specimen(read: Specimen) -> Result<Scene, Error> {
     let between_grips = outline_of(shape);
     let (outline, size) =
         between_grips.ok_or_else(|| other("the specimen is not held by two grips"))?;
-    let grip = grip_of(&read.problem.supports).filter(|_| read.problem.loads.is_empty());
-    let grip = grip.ok_or_else(|| {
+    let unloaded = grip_of(&read.problem.supports).filter(|_| read.problem.loads.is_empty());
+    let grip = unloaded.ok_or_else(|| {
         other("the specimen must have a clamp `left` and a rigid grip `right`, and no other supports or loads")
     })?;
     let along = (size[0] / size[1] * across as f64).round() as usize;
@@ -325,8 +325,8 @@ mod tests {
         newer.text.push_str("# once more\n");
         let opened = open(&text, std::slice::from_ref(&newer)).unwrap();
         assert_eq!(opened.card, newer);
-        let bare = text.lines().filter(|line| !line.starts_with(CARD));
-        let bare = bare.collect::<Vec<_>>().join("\n");
+        let others = text.lines().filter(|line| !line.starts_with(CARD));
+        let bare = others.collect::<Vec<_>>().join("\n");
         assert_eq!(open(&bare, &[scene.card.clone()]).unwrap(), scene);
         let fault = open(&bare, &[]).unwrap_err();
         assert!(fault.to_string().contains("my gel.toml"), "{fault}");

@@ -312,8 +312,8 @@ impl Table {
         let settled = model != Model::Corrected || !self.holding;
         let springs = self
             .springs_at_grip()
-            .filter(|_| settled && model == Model::Corrected && scene.look.multipliers);
-        let springs = springs.map(|solved| solved.displacement.clone());
+            .filter(|_| settled && model == Model::Corrected && scene.look.multipliers)
+            .map(|solved| solved.displacement.clone());
         let asked = Asked {
             scene: asked,
             settled,

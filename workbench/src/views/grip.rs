@@ -74,8 +74,9 @@ pub fn show(ui: &Ui, scene: &Scene, view: View, name: &str) -> Held {
     });
     draw(ui.painter(), [bottom, top, knob], ui, [&pulled, &turned]);
 
-    let to = moved(ui, &pulled, view, grip).or_else(|| turn(ui, &turned, view.at(middle), grip));
-    let to = to.or_else(|| by_keys(ui, &pulled, id, scene));
+    let to = moved(ui, &pulled, view, grip)
+        .or_else(|| turn(ui, &turned, view.at(middle), grip))
+        .or_else(|| by_keys(ui, &pulled, id, scene));
     Held {
         to: to.map(|to| within(to, scene)),
         holding: pulled.dragged() || turned.dragged(),

@@ -71,14 +71,16 @@ pub(super) fn of_mat(bytes: &[u8], part: Option<&str>) -> Result<Vec<TableText>,
 /// The table that several arrays are, or the one that is named.
 fn chosen(arrays: Vec<Array>, part: Option<&str>) -> Result<Vec<TableText>, Unconvertible> {
     if let Some(name) = part {
-        let array = arrays.iter().find(|array| array.name == name);
-        let known: Vec<&str> = arrays.iter().map(|array| &*array.name).collect();
-        let array = array.ok_or_else(|| {
-            Unconvertible::new(
-                format!("has no array `{name}`"),
-                suggestion(name, &known, "its arrays:"),
-            )
-        })?;
+        let array = arrays
+            .iter()
+            .find(|array| array.name == name)
+            .ok_or_else(|| {
+                let known: Vec<&str> = arrays.iter().map(|array| &*array.name).collect();
+                Unconvertible::new(
+                    format!("has no array `{name}`"),
+                    suggestion(name, &known, "its arrays:"),
+                )
+            })?;
         return of_one(array, true);
     }
     let several: Vec<&Array> = arrays

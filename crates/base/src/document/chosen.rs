@@ -26,9 +26,11 @@ pub fn column_meaning<R: Copy + PartialEq>(
     meaning: R,
     table: &Table,
 ) -> Option<usize> {
-    let names = names.iter().filter(|(known, _)| *known == meaning);
-    let mut names = names.flat_map(|(_, names)| names.split(' '));
-    names.find_map(|name| table.column(name))
+    names
+        .iter()
+        .filter(|(known, _)| *known == meaning)
+        .flat_map(|(_, names)| names.split(' '))
+        .find_map(|name| table.column(name))
 }
 
 /// Names that people and testing machines give to the time.

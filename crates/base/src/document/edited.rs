@@ -108,8 +108,9 @@ fn set_within(
         Value::Table(table) => set(table, rest, value),
         Value::Array(list) => {
             let count = list.len();
-            let position = rest[0].parse::<usize>().ok();
-            let position = position
+            let entry = rest[0]
+                .parse::<usize>()
+                .ok()
                 .and_then(|position| list.get_mut(position))
                 .ok_or_else(|| {
                     format!(
@@ -119,10 +120,10 @@ fn set_within(
                 })?;
             match rest {
                 [_] => {
-                    *position = value.value();
+                    *entry = value.value();
                     Ok(())
                 }
-                _ => set_within(position, rest[0], &rest[1..], value),
+                _ => set_within(entry, rest[0], &rest[1..], value),
             }
         }
         _ => Err(format!("`{name}` is a value, not a section")),

@@ -164,8 +164,9 @@ fn alone(read: &dyn Fn(&str) -> Vec<Key>, file: &Table, all: &mut Vec<Key>) {
 /// A suitable value for a key.
 fn value(key: &Key) -> Value {
     let takes = key.takes.first();
-    let example = key.example.clone();
-    let example = example
+    let example = key
+        .example
+        .clone()
         .or_else(|| takes.map(Takes::example))
         .unwrap_or_default();
     let document = format!("value = {example}").parse::<Table>().ok();

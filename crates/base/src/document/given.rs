@@ -8,10 +8,10 @@ thread_local! {
     static GIVEN: RefCell<BTreeMap<PathBuf, Vec<u8>>> = const { RefCell::new(BTreeMap::new()) };
 }
 
-/// Removes the files again, even after a panic.
-struct Taken(BTreeMap<PathBuf, Vec<u8>>);
+/// Gives the thread its former files again, even after a panic.
+struct Restored(BTreeMap<PathBuf, Vec<u8>>);
 
-impl Drop for Taken {
+impl Drop for Restored {
     fn drop(&mut self) {
         GIVEN.set(std::mem::take(&mut self.0));
     }
@@ -34,7 +34,7 @@ pub fn with_files<T>(
     work: impl FnOnce() -> T,
 ) -> T {
     let before = GIVEN.replace(files.into_iter().collect());
-    let _taken = Taken(before);
+    let _restored = Restored(before);
     work()
 }
 

@@ -50,9 +50,11 @@ fn remark_of(line: &str, sign: char) -> Option<String> {
 /// lines; otherwise the first one that most lines have.
 pub(super) fn delimiter(text: &str) -> Option<u8> {
     const ALL: [u8; 3] = [b';', b'\t', b','];
-    let lines = text.split(['\n', '\r']);
-    let lines = lines.filter(|line| !line.trim().is_empty() && !line.starts_with('#'));
-    let lines: Vec<&str> = lines.take(SURVEYED).collect();
+    let lines: Vec<&str> = text
+        .split(['\n', '\r'])
+        .filter(|line| !line.trim().is_empty() && !line.starts_with('#'))
+        .take(SURVEYED)
+        .collect();
     let count = |line: &str, delimiter: u8| {
         let bytes = line.as_bytes().iter();
         bytes.filter(|byte| **byte == delimiter).count()

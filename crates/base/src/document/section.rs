@@ -376,8 +376,8 @@ fn shown(value: &DeValue<'_>) -> String {
             format!("[{}]", items.collect::<Vec<_>>().join(", "))
         }
         DeValue::Table(table) => {
-            let entries = table.iter();
-            let entries = entries
+            let entries = table
+                .iter()
                 .map(|(key, value)| format!("{} = {}", key.get_ref(), shown(value.get_ref())));
             format!("{{ {} }}", entries.collect::<Vec<_>>().join(", "))
         }

@@ -162,9 +162,10 @@ fn write_pictures(
     figures: &[Figure],
     style: &PictureStyle,
 ) -> Result<Vec<ReportPicture>, Error> {
-    let drawn = figures.par_iter();
-    let drawn = drawn.map(|figure| ReportPicture::draw(&figure.name, &figure.drawing, style));
-    let drawn: Vec<ReportPicture> = drawn.collect();
+    let drawn: Vec<ReportPicture> = figures
+        .par_iter()
+        .map(|figure| ReportPicture::draw(&figure.name, &figure.drawing, style))
+        .collect();
     for (name, bytes) in drawn.iter().flat_map(|picture| &picture.files) {
         folder.add(name, bytes)?;
     }
@@ -259,8 +260,10 @@ pub fn save(path: &Path, bytes: &[u8]) -> Result<Option<Diagnostic>, Error> {
     refuse_inputs(path, &[])?;
     let fault = |cause: std::io::Error| Error::write(path, cause);
     // A name alone has an empty parent.
-    let folder = path.parent().filter(|parent| *parent != Path::new(""));
-    let folder = folder.unwrap_or(Path::new("."));
+    let folder = path
+        .parent()
+        .filter(|parent| *parent != Path::new(""))
+        .unwrap_or(Path::new("."));
     refuse_file(folder)?;
     if path.is_dir() {
         let cause = "it is a folder; name the file in it that is to be written";

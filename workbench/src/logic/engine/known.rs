@@ -15,8 +15,7 @@ impl Bodies {
     /// field was found.
     pub fn partly_known(&mut self, grip: Grip, known: Known) -> Result<Vec<f64>, Error> {
         let stretched = grip.displacement[1] == 0.0 && grip.angle == 0.0;
-        let plate = self.plate().filter(|_| stretched).cloned();
-        let plate = plate.ok_or_else(|| {
+        let plate = self.plate().filter(|_| stretched).cloned().ok_or_else(|| {
             Error::input(
                 "conditions can be left out only for plates that are only stretched, without shear or rotation",
                 "use a plate with a straight grip, or give the corrector all conditions",

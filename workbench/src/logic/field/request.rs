@@ -24,8 +24,8 @@ pub(super) fn length(what: &str, text: &str) -> Result<Option<f64>, Error> {
 }
 
 pub(super) fn request(question: &FieldQuestion) -> Result<Request, Error> {
-    let thickness = length("the thickness", &question.thickness)?;
-    let thickness = thickness.filter(|value| *value > 0.0).ok_or_else(|| {
+    let stated = length("the thickness", &question.thickness)?;
+    let thickness = stated.filter(|value| *value > 0.0).ok_or_else(|| {
         Error::input(
             "the thickness at rest is not stated",
             "write it with its unit, such as \"2 mm\"",

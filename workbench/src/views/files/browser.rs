@@ -60,8 +60,9 @@ fn download(name: &str, content: &[u8]) -> Result<String, String> {
         let parts = js_sys::Array::of1(&js_sys::Uint8Array::from(content));
         let blob = web_sys::Blob::new_with_u8_array_sequence(&parts)?;
         let url = web_sys::Url::create_object_url_with_blob(&blob)?;
-        let document = web_sys::window().and_then(|window| window.document());
-        let document = document.ok_or("a page without a document")?;
+        let document = web_sys::window()
+            .and_then(|window| window.document())
+            .ok_or("a page without a document")?;
         let link: web_sys::HtmlAnchorElement = document.create_element("a")?.dyn_into()?;
         link.set_href(&url);
         link.set_download(name);

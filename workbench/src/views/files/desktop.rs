@@ -193,9 +193,12 @@ impl Files {
         let Some(placed) = self.asked.take() else {
             return false;
         };
-        let others = placed.files.iter();
-        let others = others.filter(|(path, content)| self.is_of_others(path, content));
-        let names: Vec<String> = others.map(|(path, _)| path.display().to_string()).collect();
+        let names: Vec<String> = placed
+            .files
+            .iter()
+            .filter(|(path, content)| self.is_of_others(path, content))
+            .map(|(path, _)| path.display().to_string())
+            .collect();
         let text = match &names[..] {
             [name] => format!(
                 "{name} is there already, and this workbench has not written it as it is. Replace it?"
@@ -260,12 +263,13 @@ impl Placed {
     /// All files in a folder of their own within another one.
     fn within(folder: &Path, outgoing: Outgoing) -> Self {
         let folder = folder.join(&outgoing.written.name);
-        let files = outgoing.written.files.iter();
-        let files = files.map(|(name, content)| (folder.join(name), content.clone()));
-        Self {
-            files: files.collect(),
-            outgoing,
-        }
+        let files = outgoing
+            .written
+            .files
+            .iter()
+            .map(|(name, content)| (folder.join(name), content.clone()))
+            .collect();
+        Self { files, outgoing }
     }
 }
 
@@ -282,8 +286,10 @@ fn placed_in_words(files: &[(PathBuf, Vec<u8>)], outgoing: &Outgoing) -> String 
             )
         }
         _ => {
-            let folder = files.first().and_then(|(path, _)| path.parent());
-            let folder = folder.map_or_else(String::new, |folder| folder.display().to_string());
+            let folder = files
+                .first()
+                .and_then(|(path, _)| path.parent())
+                .map_or_else(String::new, |folder| folder.display().to_string());
             format!("{} files in {folder}", files.len())
         }
     }

@@ -42,18 +42,18 @@ pub fn array(name: String, bytes: &[u8]) -> Result<Array, Unconvertible> {
     let shape: Vec<usize> = sizes.collect();
     let is_transposed = value(&tokens, "fortran_order").is_some_and(|value| value[0] == "True");
     let size: usize = fields.iter().map(|field| field.size).sum();
-    let entries = shape
-        .iter()
-        .try_fold(1_usize, |all, size| all.checked_mul(*size));
     let data = &bytes[start + length..];
-    let entries = entries.filter(|entries| {
-        entries
-            .checked_mul(size)
-            .is_some_and(|needed| needed <= data.len())
-    });
-    let entries = entries.ok_or_else(cut_off)?;
-    afford(0.0, (entries * fields.len()) as f64)?;
-    let entries = data.chunks_exact(size).take(entries);
+    let count = shape
+        .iter()
+        .try_fold(1_usize, |all, size| all.checked_mul(*size))
+        .filter(|count| {
+            count
+                .checked_mul(size)
+                .is_some_and(|needed| needed <= data.len())
+        })
+        .ok_or_else(cut_off)?;
+    afford(0.0, (count * fields.len()) as f64)?;
+    let entries = data.chunks_exact(size).take(count);
     let numbers: Vec<f64> = entries.flat_map(|entry| numbers(&fields, entry)).collect();
     let plain = fields.len() == 1 && fields[0].name.is_empty();
     Ok(Array {
@@ -101,8 +101,9 @@ fn tokens(head: &str) -> Vec<String> {
                 (end + 1).min(rest.len())
             }
             letter if letter.is_alphanumeric() => {
-                let end = rest.find(|letter: char| !letter.is_alphanumeric());
-                let end = end.unwrap_or(rest.len());
+                let end = rest
+                    .find(|letter: char| !letter.is_alphanumeric())
+                    .unwrap_or(rest.len());
                 tokens.push(rest[..end].to_owned());
                 end
             }

@@ -109,8 +109,10 @@ fn mesh(model: &Model, deck: &mut Deck) {
         (CellShape::Quad4, "CPS4"),
         (CellShape::Quad8, eight),
     ] {
-        let cells = model.cells.iter().enumerate();
-        let mut cells = cells
+        let mut cells = model
+            .cells
+            .iter()
+            .enumerate()
             .filter(|(_, (cell_shape, _))| *cell_shape == shape)
             .peekable();
         if cells.peek().is_some() {
@@ -338,10 +340,10 @@ fn tension_curve(card: &Card) -> Vec<[f64; 2]> {
     const POINTS: u32 = 400;
     let most = (1.5 * card.stretch_range[1] - 1.0).max(2.0);
     let strains = (0..=POINTS).map(|i| most * f64::from(i) / f64::from(POINTS));
-    let points = strains.map(|strain| (strain, card.law.tension([1.0, 0.0], strain)));
-    // Beyond a law's limit the stress may be a number, but the energy is none.
-    let points = points.take_while(|(_, test)| (test.energy + test.nominal_stress).is_finite());
-    points
+    strains
+        .map(|strain| (strain, card.law.tension([1.0, 0.0], strain)))
+        // Beyond a law's limit the stress may be a number, but the energy is none.
+        .take_while(|(_, test)| (test.energy + test.nominal_stress).is_finite())
         .map(|(strain, test)| [strain, test.nominal_stress])
         .collect()
 }

@@ -221,19 +221,19 @@ impl<'a> Model<'a> {
         for (number, (group, support)) in self.given.problem.supports.iter().enumerate() {
             let group_set = self.groups.iter().position(|known| known == group);
             for axis in [0, 1] {
-                let held_nodes = self.nodes.iter().copied();
-                let held_nodes =
-                    held_nodes.filter(|node| held.get(&(2 * node + axis)) == Some(&number));
-                let held_nodes: Vec<usize> = held_nodes.collect();
+                let nodes = self.nodes.iter().copied();
+                let held_nodes: Vec<usize> = nodes
+                    .filter(|node| held.get(&(2 * node + axis)) == Some(&number))
+                    .collect();
                 if held_nodes.is_empty() {
                     continue;
                 }
-                let known = group_set.filter(|set| self.sets[*set].1 == held_nodes);
-                let known = known.or_else(|| {
-                    self.sets
-                        .iter()
-                        .rposition(|(_, nodes)| *nodes == held_nodes)
-                });
+                let known = group_set
+                    .filter(|set| self.sets[*set].1 == held_nodes)
+                    .or_else(|| {
+                        let mut sets = self.sets.iter();
+                        sets.rposition(|(_, nodes)| *nodes == held_nodes)
+                    });
                 let set = known.unwrap_or_else(|| {
                     self.sets.push((names.give("HELD"), held_nodes));
                     self.sets.len() - 1

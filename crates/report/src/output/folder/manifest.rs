@@ -94,10 +94,13 @@ impl Locked {
     /// [`Error::Write`] when it cannot be opened, or when another process has it.
     pub fn open(folder: &Path) -> Result<Self, Error> {
         let path = folder.join(MANIFEST);
-        let mut options = File::options();
-        let options = options.read(true).write(true).create(true).truncate(false);
-        let opened = options.open(&path);
-        let file = opened.map_err(|cause| Error::write(&path, cause))?;
+        let file = File::options()
+            .read(true)
+            .write(true)
+            .create(true)
+            .truncate(false)
+            .open(&path)
+            .map_err(|cause| Error::write(&path, cause))?;
         match file.try_lock() {
             // Some file systems know no locks; two runs at once are then the user's own care.
             Ok(()) | Err(TryLockError::Error(_)) => Ok(Self {

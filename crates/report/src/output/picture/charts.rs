@@ -147,10 +147,10 @@ fn area_height(height: u32, look: Look) -> f64 {
 
 /// What numbers and label of a vertical axis take.
 fn axis_width(axis: &Scaled, look: Look) -> f64 {
-    let numbers = axis.ticks.at.iter();
-    let numbers = numbers.map(|(_, label)| look.number().width(label));
+    let ticks = axis.ticks.at.iter();
+    let widths = ticks.map(|(_, number)| look.number().width(number));
     let label = look.name().line_height() * axis.label.len() as f64;
-    EDGE + label + APART + numbers.fold(0.0, f64::max) + BESIDE
+    EDGE + label + APART + widths.fold(0.0, f64::max) + BESIDE
 }
 
 /// Of every chart the limits of its horizontal axis, which it shares with those above and below that have the same.

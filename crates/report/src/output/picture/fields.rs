@@ -113,9 +113,11 @@ impl FieldFigure {
         let table = look.bar(range.is_signed);
         bar.paint(painter, &table);
         // At zero a field of both signs is white, and noise would draw lines there.
-        let levels = bar.ticks.at.iter();
-        let levels = levels.filter(|(at, _)| !(range.is_signed && at.abs() < 1e-12));
-        let levels: Vec<f64> = levels.map(|(at, _)| self.scale.value(*at)).collect();
+        let ticks = bar.ticks.at.iter();
+        let levels: Vec<f64> = ticks
+            .filter(|(at, _)| !(range.is_signed && at.abs() < 1e-12))
+            .map(|(at, _)| self.scale.value(*at))
+            .collect();
         let share = |value: f64| {
             if value.is_nan() {
                 f64::NAN

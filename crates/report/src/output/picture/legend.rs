@@ -144,8 +144,8 @@ pub(super) const JOINS: [f32; 2] = [3.0, 4.0];
 
 /// Names and remarks with no more than a width of room.
 fn entries(chart: &LineChart, look: Look, width: f64) -> Vec<Entry<'_>> {
-    let named = chart.lines.iter().filter(|line| !line.label.is_empty());
-    let named = named.map(|line| (Sample::Line(line), &*line.label));
+    let labelled = chart.lines.iter().filter(|line| !line.label.is_empty());
+    let named = labelled.map(|line| (Sample::Line(line), &*line.label));
     let joins = chart.dashes().map(|words| (Sample::Joins, words));
     let band = chart.band.as_ref().map(|(_, name)| (Sample::Band, &**name));
     let notes = chart.notes.iter().map(|note| (Sample::Nothing, &**note));
