@@ -214,13 +214,13 @@ pub fn rows(
         }
         None => points_to_draw(sampling, dimensions)?,
     };
-    let combinations = variables.iter().try_fold(samples, |count, variable| {
+    let runs = variables.iter().try_fold(samples, |count, variable| {
         count.checked_mul(match &variable.values {
             Values::Listed(values) => values.len(),
             _ => 1,
         })
     });
-    if combinations.is_none_or(|count| count > MOST_RUNS) {
+    if runs.is_none_or(|count| count > MOST_RUNS) {
         let fault = Diagnostic::error("", "there are more than a million runs");
         return Err(fault.hint("take fewer values, or draw points of distributions"));
     }
@@ -228,20 +228,7 @@ pub fn rows(
         .map(|index| point(index, dimensions, sampling))
         .collect();
     let mut all = Vec::new();
-    let mut listed: Vec<Vec<Setting>> = vec![Vec::new()];
-    for variable in variables {
-        if let Values::Listed(values) = &variable.values {
-            listed = listed
-                .iter()
-                .flat_map(|before| {
-                    values
-                        .iter()
-                        .map(move |value| [&before[..], std::slice::from_ref(value)].concat())
-                })
-                .collect();
-        }
-    }
-    for combination in &listed {
+    for combination in &combinations(variables) {
         for (index, shares) in shares.iter().enumerate() {
             let mut settings = row(variables, fitted, combination, shares);
             settings.extend(
@@ -253,6 +240,24 @@ pub fn rows(
         }
     }
     Ok(all)
+}
+
+/// The combinations of all listed values, those of the last variable changing fastest.
+fn combinations(variables: &[Variable]) -> Vec<Vec<Setting>> {
+    let mut all: Vec<Vec<Setting>> = vec![Vec::new()];
+    for variable in variables {
+        if let Values::Listed(values) = &variable.values {
+            all = all
+                .iter()
+                .flat_map(|before| {
+                    values
+                        .iter()
+                        .map(move |value| [&before[..], std::slice::from_ref(value)].concat())
+                })
+                .collect();
+        }
+    }
+    all
 }
 
 /// The number of points drawn from so many distributions: one where there are none.

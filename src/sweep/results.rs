@@ -263,34 +263,41 @@ pub fn figures(keys: &[String], rows: &[Row], along: Steps) -> Vec<Figure> {
     });
     let rows = at_last_step(rows);
     let at_last = statistics(&rows);
-    let last =
-        (at_last.iter()).find(|one| is_force(&one.name) && one.name.starts_with("corrected"));
-    let over = last.into_iter().flat_map(|one| {
-        let at = along.describe(parts_of(&one.name).1);
-        let rows = &rows;
-        let heads = &heads;
-        let axis = |index: usize| -> Option<Figure> {
-            let points: Option<Vec<[f64; 2]>> = rows
-                .iter()
-                .filter_map(|row| Some((row, row.figure(&one.name)?)))
-                .map(|(row, value)| Some([row.settings[index].value()?, value]))
-                .collect();
-            let chart = LineChart::new(
-                format!("Force over {}", keys[index]),
-                Axis::new(&heads[index], Scale::Interval),
-                Axis::new(&format!("force at {at} [N]"), Scale::Interval),
-                vec![Line::new("", points?, PALETTE[0], Stroke::Points)],
-            );
-            let caption = format!(
-                "The force of the corrected model at {at} over {}: a point for each run.",
-                keys[index]
-            );
-            let name = format!("force_over_{}.png", keys[index].replace('.', "_"));
-            Some(Figure::new(name, caption, chart))
-        };
-        (0..keys.len()).filter_map(axis).collect::<Vec<_>>()
+    let force = at_last
+        .iter()
+        .find(|one| is_force(&one.name) && one.name.starts_with("corrected"));
+    let over = force.into_iter().flat_map(|force| {
+        let at = along.describe(parts_of(&force.name).1);
+        let keys_and_heads = keys.iter().zip(&heads).enumerate();
+        let figures = keys_and_heads.filter_map(|(index, (key, head))| {
+            let points = points_over(&rows, index, &force.name)?;
+            Some(force_over(key, head, &at, points))
+        });
+        figures.collect::<Vec<_>>()
     });
     band.into_iter().chain(over).collect()
+}
+
+/// A figure over one of the settings, for all runs that have the figure; `None` where a setting is no number.
+fn points_over(rows: &[Row], setting: usize, figure: &str) -> Option<Vec<[f64; 2]>> {
+    rows.iter()
+        .filter_map(|row| Some((row, row.figure(figure)?)))
+        .map(|(row, value)| Some([row.settings[setting].value()?, value]))
+        .collect()
+}
+
+/// The picture of the corrected model's force over a key.
+fn force_over(key: &str, head: &str, at: &str, points: Vec<[f64; 2]>) -> Figure {
+    let chart = LineChart::new(
+        format!("Force over {key}"),
+        Axis::new(head, Scale::Interval),
+        Axis::new(&format!("force at {at} [N]"), Scale::Interval),
+        vec![Line::new("", points, PALETTE[0], Stroke::Points)],
+    );
+    let caption =
+        format!("The force of the corrected model at {at} over {key}: a point for each run.");
+    let name = format!("force_over_{}.png", key.replace('.', "_"));
+    Figure::new(name, caption, chart)
 }
 
 /// Whether a figure is the force of a model as a whole: not that of a group, nor an error.

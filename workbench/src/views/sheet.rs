@@ -115,11 +115,7 @@ impl Sheets {
         }
         let untouched = table.steps() == [false; 2] && table.moving().is_none();
         if let Some(held) = held.as_ref().filter(|_| untouched) {
-            let font = FontId::proportional(15.0);
-            let ink = ui.visuals().hyperlink_color;
-            let position = held.at + vec2(16.0, 0.0);
-            ui.painter()
-                .text(position, Align2::LEFT_CENTER, "pull me", font, ink);
+            invite(ui, held.at);
         }
         warnings(ui, table, row);
         colour_bar(ui, table.shown_colour().name(), span, bar);
@@ -269,6 +265,15 @@ fn label(position: &Place, model: Model, at: Pos2) {
     let text = format!("{}{follows}", model.name());
     let font = FontId::proportional(13.0);
     position.painter.text(at, Align2::LEFT_TOP, text, font, ink);
+}
+
+/// Says beside the grip what to do first.
+fn invite(ui: &Ui, grip: Pos2) {
+    let font = FontId::proportional(15.0);
+    let ink = ui.visuals().hyperlink_color;
+    let position = grip + vec2(16.0, 0.0);
+    ui.painter()
+        .text(position, Align2::LEFT_CENTER, "pull me", font, ink);
 }
 
 /// What the command would warn of, in a row that is there without warnings too, so that they move nothing; in full below the sheets

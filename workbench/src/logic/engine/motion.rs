@@ -162,13 +162,13 @@ fn viscosity(card: &Card, damping: f64) -> Result<ViscousMaterial, Error> {
         shear_viscosity: card_viscosity.shear_viscosity + damping,
         ..card_viscosity.clone()
     };
-    match !viscosity.is_none() && card.bulk_modulus().is_some() {
-        false => Ok(viscosity),
-        true => Err(Error::input(
+    if !viscosity.is_none() && card.bulk_modulus().is_some() {
+        return Err(Error::input(
             "the viscous stress assumes an incompressible sheet, but this card is compressible",
             "set the damping to zero, or choose an incompressible card",
-        )),
+        ));
     }
+    Ok(viscosity)
 }
 
 impl Body {

@@ -40,16 +40,7 @@ impl Fields {
             .color(ink)
             .strong(),
         );
-        for (edge, [x, y]) in &frame.forces {
-            let axis = |[value, low, high]: &[f64; 3]| {
-                if frame.explained {
-                    format!("{value:.4} N ({low:.4} … {high:.4})")
-                } else {
-                    format!("{value:.4} N (no interval)")
-                }
-            };
-            ui.label(format!("force on {edge}: x {}, y {}", axis(x), axis(y)));
-        }
+        forces(ui, frame);
         if let Some((photo, Drawing::Mesh(figure))) = &frame.photo {
             ui.label("the camera image, and the mesh as the corrected field moves it");
             let room = report::room(ui, photo.corners.iter());
@@ -77,6 +68,21 @@ impl Fields {
         let title = format!("Frame {}", frame.number);
         let figure = FieldFigure::new(title, name.clone(), [panel.clone()]);
         Some(Drawing::from(figure))
+    }
+}
+
+/// The forces on the edges, with their intervals where the field is explained.
+fn forces(ui: &mut Ui, frame: &CorrectedFrame) {
+    let component = |[value, low, high]: &[f64; 3]| {
+        if frame.explained {
+            format!("{value:.4} N ({low:.4} … {high:.4})")
+        } else {
+            format!("{value:.4} N (no interval)")
+        }
+    };
+    for (edge, [x, y]) in &frame.forces {
+        let (x, y) = (component(x), component(y));
+        ui.label(format!("force on {edge}: x {x}, y {y}"));
     }
 }
 

@@ -10,7 +10,7 @@ use pdf_writer::types::{
     CidFontType, FontFlags, LineCapStyle, LineJoinStyle, SystemInfo, UnicodeCmap,
 };
 use pdf_writer::{Content, Filter, Finish, Name, Pdf, Rect, Ref, Str};
-use tiny_skia::{Path, PathSegment};
+use tiny_skia::{Path, PathSegment, Pixmap};
 
 use super::encode::{colours, full};
 use super::letters::{Face, Letters};
@@ -76,14 +76,7 @@ impl Vectors {
         pdf.stream(drawing, &compressed(&content)?)
             .filter(Filter::FlateDecode);
         if let Some(shaded) = &self.image {
-            let bytes = compressed(&colours(shaded, full(shaded)))?;
-            let mut object = pdf.image_xobject(image, &bytes);
-            object.filter(Filter::FlateDecode);
-            object.bits_per_component(8);
-            object
-                .width(shaded.width() as i32)
-                .height(shaded.height() as i32);
-            object.color_space().device_rgb();
+            write_image(&mut pdf, image, shaded)?;
         }
         Ok(pdf.finish())
     }
@@ -238,6 +231,19 @@ fn write_words(content: &mut Content, words: &Words, covers: &mut Covers) {
     });
     content.show(Str(&glyphs));
     content.end_text();
+}
+
+/// What is shaded, as an image.
+fn write_image(pdf: &mut Pdf, id: Ref, shaded: &Pixmap) -> std::io::Result<()> {
+    let bytes = compressed(&colours(shaded, full(shaded)))?;
+    let mut object = pdf.image_xobject(id, &bytes);
+    object.filter(Filter::FlateDecode);
+    object.bits_per_component(8);
+    object
+        .width(shaded.width() as i32)
+        .height(shaded.height() as i32);
+    object.color_space().device_rgb();
+    Ok(())
 }
 
 /// A font whose letters are named by their numbers in its file, with their meaning for programs that copy or search.

@@ -23,9 +23,10 @@ impl Exported {
         let keyword = keyword.split(", LOCAL").next().unwrap();
         let directions = if text.contains("*ORIENTATION") {
             let mut lines = numbers(text, "*ORIENTATION");
-            match keyword.starts_with("FUNG") {
-                true => vec![lines.remove(0)],
-                false => lines.split_off(2),
+            if keyword.starts_with("FUNG") {
+                vec![lines.remove(0)]
+            } else {
+                lines.split_off(2)
             }
         } else {
             Vec::new()
