@@ -1,6 +1,6 @@
 //! gelbench for Python: the module `gelbench._core`, below the package `gelbench`.
 //!
-//! It hands texts and arrays to the library's front door and what comes of them back, and knows no mechanics. The GIL is free
+//! It passes texts and arrays to the library and returns its results, and contains no mechanics. The GIL is free
 //! while something is computed: [`running`].
 
 use pyo3::prelude::*;

@@ -1,4 +1,4 @@
-//! What a study finds, as the command tells it.
+//! The results of a study, as the command reports them.
 
 use std::path::{Path, PathBuf};
 

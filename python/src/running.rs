@@ -1,7 +1,7 @@
-//! Computations beside Python: the GIL is free while they run, Ctrl-C and exceptions of callbacks end them.
+//! Computations outside of the GIL, which Ctrl-C and exceptions of callbacks end.
 //!
-//! A computation runs in a thread of its own, and the calling one looks for signals. It ends by unwinding, where it tells its
-//! progress or asks the material: [`crate::law::Watched`].
+//! A computation runs in a thread of its own, and the calling one looks for signals. A computation that is to stop unwinds where it reports its
+//! progress or calls the material: [`crate::law::Watched`].
 
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
@@ -23,10 +23,10 @@ const PATIENCE: Duration = Duration::from_millis(50);
 /// The stack of a computation's thread: that of a program's first one.
 const STACK: usize = 8 << 20;
 
-/// What a computation is unwound with: the exception is kept by its watch.
+/// The payload of the panic that stops a computation; the exception is in its [`Watch`].
 pub struct Stopped;
 
-/// Whom a computation asks whether it shall go on, and tells what it does.
+/// Takes the progress of a computation, and stops it.
 #[derive(Default)]
 pub struct Watch {
     stopped: AtomicBool,
@@ -70,7 +70,7 @@ impl Watch {
     }
 }
 
-/// What comes of a computation.
+/// Runs a computation that can be stopped; its result, or the exception.
 pub fn run<T: Send>(
     py: Python<'_>,
     progress: Option<Py<PyAny>>,
@@ -116,7 +116,7 @@ fn in_thread<T: Send>(
     })
 }
 
-/// What comes of a short piece of work.
+/// Runs a short computation, whose panic becomes an exception.
 pub fn caught<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyResult<T> {
     let result = py.detach(|| catch_unwind(AssertUnwindSafe(work)));
     result.map_err(|payload| of_panic(&*payload))

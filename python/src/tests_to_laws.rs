@@ -93,7 +93,7 @@ pub fn fit(
     })
 }
 
-/// What is fitted beside a law: nothing, softening, or a Prony series of as many terms as are asked for or as AICc asks for.
+/// What is fitted besides a law: nothing, softening, or a Prony series of a given number of terms or of the number with the least AICc.
 fn memory(history: Option<&str>) -> Result<Memory, Error> {
     match history {
         None => Ok(Memory::None),

@@ -145,7 +145,7 @@ fn terms(text: &str) -> Result<Terms, Error> {
     })
 }
 
-/// What is fitted beside a law.
+/// What is fitted besides a law.
 fn memory(terms: Option<Terms>, softening: bool) -> Memory {
     if softening {
         Memory::Softening

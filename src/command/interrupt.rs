@@ -11,7 +11,7 @@ const EXIT_CODE: i32 = 130;
 
 static UNFINISHED: Mutex<Option<Arc<Unfinished>>> = Mutex::new(None);
 
-/// From here on an interrupted command takes away what is not in place, says so and ends.
+/// From here on an interrupted command removes the files that are not yet in place, reports it and ends.
 pub fn attend() {
     // Without a handler the system ends the command, and the next one sweeps what it has left.
     let _ = ctrlc::set_handler(|| {

@@ -8,7 +8,8 @@ use gelbench_base::error::{Diagnostic, Error};
 use gelbench_mechanics::solve::{Journal, Milestone};
 use gelbench_report::output::ResultFolder;
 
-/// How much work a kill may undo, but for the load factor that is being solved: what is found within it is not worth a file.
+/// How much work may be lost when the run is killed, besides the load factor that is being solved; states found in less time are
+/// not written.
 const WORTH_A_FILE: Duration = Duration::from_secs(2);
 
 /// Equilibria with the number of their path.

@@ -14,7 +14,7 @@ use gelbench_base::error::{Diagnostic, Error};
 use gelbench_report::output;
 use gelbench_report::results::End;
 
-/// What a command comes to: its exit code, or the fault that decides on it.
+/// The end of a command: its exit code, or the fault that determines it.
 pub type Outcome = Result<u8, Error>;
 
 /// The exit code where a model and its conditions do not explain the measured data.
@@ -127,7 +127,7 @@ fn diagnostic(finding: &Diagnostic) -> String {
     message::diagnostic(finding, io::stderr().is_terminal(), columns_of_errors())
 }
 
-/// Writes a file, and tells what was kept that stood in its place.
+/// Writes a file, and warns where a former file of its name was kept under another one.
 ///
 /// # Errors
 /// As [`output::save`].

@@ -31,7 +31,7 @@ pub fn open(files: &[PathBuf]) -> Outcome {
         .map_or(1, |code| u8::try_from(code).unwrap_or(1)))
 }
 
-/// The program beside this one, else the first one on the path.
+/// The workbench's program in the folder of this one, else the first one on the path.
 fn installed(first: Option<&Path>, path: Option<&OsStr>) -> Option<PathBuf> {
     let name = format!("{PROGRAM}{}", std::env::consts::EXE_SUFFIX);
     let on_path = path.into_iter().flat_map(std::env::split_paths);

@@ -11,7 +11,7 @@ use gelbench_mechanics::material::Card;
 use gelbench_studies::studies::specimen::Along;
 use gelbench_studies::studies::{PreparedStudy, Steps, motion, specimen};
 
-/// The card of a run stands beside the study's own under this name, in memory.
+/// The name of a run's card, which is a file in memory in the folder of the study's own card.
 const CARD: &str = "gelbench-sweep-card.toml";
 
 /// The keys under `material` that belong to the study; all others are parameters of the card.

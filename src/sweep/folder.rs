@@ -189,7 +189,7 @@ impl<'a> SweepFolder<'a> {
     }
 }
 
-/// The folder of a name, or the first beside it, with a number behind its name, that has no other sweep.
+/// The folder of a name, or with a number after its name the first one that holds no other sweep.
 ///
 /// # Errors
 /// [`Error::Input`] with the faults of the sweep.

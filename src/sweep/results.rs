@@ -92,7 +92,7 @@ fn parts_of(name: &str) -> (&str, &str) {
     name.rsplit_once('@').unwrap_or((name, ""))
 }
 
-/// The figures but those that are rounding beside the largest one of their quantity, such as a force across a symmetric plate.
+/// The figures except those that are rounding errors of the largest one of their quantity, such as a force across a symmetric plate.
 fn without_rounding(all: &[Statistics]) -> impl Iterator<Item = &Statistics> {
     const ROUNDING: f64 = 1e-9;
     let mut largest: HashMap<&str, f64> = HashMap::new();

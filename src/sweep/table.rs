@@ -28,8 +28,8 @@ pub fn heads(keys: &[String], rows: &[Row]) -> Vec<String> {
     keys.map(|(index, key)| headed(key, unit(index))).collect()
 }
 
-/// The table: number of the run, the keys with units, all figures, whether requirements are met, what was amiss, and what deserves
-/// attention.
+/// The table: number of the run, the keys with units, all figures, whether requirements are met, its fault, and its
+/// warnings.
 pub fn write(keys: &[String], rows: &[Row]) -> Vec<u8> {
     let names = names(rows);
     let head = std::iter::once(FIRST.to_owned())

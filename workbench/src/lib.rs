@@ -7,7 +7,7 @@
 //! | time its frames | [`measure`] |
 //!
 //! `logic` knows nothing of how it is drawn, and every action is a value; `views` computes nothing. Models are solved
-//! beside the drawing, by threads on the desktop and by web workers in the browser, so that no frame waits for them.
+//! in the background, by threads on the desktop and by web workers in the browser, so that no frame waits for them.
 #![warn(missing_docs)]
 #![forbid(unsafe_code)]
 

@@ -1,5 +1,5 @@
-//! Work beside the drawing: a thread on the desktop, a web worker in the browser. Of questions that come while one is
-//! being answered the newest is kept, so that the answers follow the hand.
+//! Work in the background: by a thread on the desktop, by a web worker in the browser. Of the questions that come while one is
+//! being answered only the newest is kept, so that the answers keep up with the user.
 
 use std::sync::Arc;
 

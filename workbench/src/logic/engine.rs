@@ -1,8 +1,8 @@
-//! Solves one model of a scene after the other as its grip moves: what runs beside the drawing.
+//! Solves one model of a scene after the other as its grip moves, in the background.
 //!
 //! Plates are corrected by the climb as long as the grip is on its way: to a thousandth of the discretisation error, from
 //! the state before. Once it rests, and for the other models and shapes, Newton's method goes on from the state before
-//! to 1e-10 of the reaction, so that the result is the same whatever way led there.
+//! to 1e-10 of the reaction, so that the result does not depend on the path of the grip.
 
 use serde::{Deserialize, Serialize};
 use web_time::Instant;

@@ -1,4 +1,4 @@
-//! Measured fields: files of markers are looked at, then corrected, beside the drawing.
+//! Measured fields: files of markers are read, shown and then corrected, in the background.
 
 use std::collections::BTreeMap;
 

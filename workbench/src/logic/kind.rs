@@ -107,7 +107,7 @@ impl Kind {
     }
 }
 
-/// Whether the head of a table is that of lines: x, y, and nothing but the number of the line beside them.
+/// Whether the head of a table is that of lines: x, y, and at most the number of the line.
 fn is_edge(head: &str) -> bool {
     let without_unit = |name: &str| plain_name(name.split('[').next().unwrap_or_default());
     let plain: Vec<String> = head.split([',', ';', '\t']).map(without_unit).collect();

@@ -1,4 +1,4 @@
-//! What goes out of a view, written beside the drawing by the library's own writers.
+//! Exports of a view, written in the background by the library's own writers.
 
 use std::io::{Cursor, Write};
 use std::path::Path;

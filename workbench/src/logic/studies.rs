@@ -1,4 +1,4 @@
-//! Studies of any kind, run beside the drawing from files that lie in memory.
+//! Studies of any kind, run in the background from files in memory.
 
 use std::path::{Path, PathBuf};
 

@@ -1,4 +1,4 @@
-//! The program: panels around the table, keys, files, and the models that are solved beside the drawing.
+//! The program: panels around the table, keys, files, and the models that are solved in the background.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;

@@ -1,4 +1,4 @@
-//! The panel beside the sheet: what it is, what it is made of, where its grip is, what is shown.
+//! The panel beside the sheet: its shape, its card, its grip, and what is shown of it.
 
 use eframe::egui::{ComboBox, DragValue, Margin, RichText, Slider, Ui};
 
@@ -11,7 +11,7 @@ use crate::logic::table::Table;
 /// Cells across a sheet that are offered.
 const CELLS: [usize; 2] = [4, 120];
 
-/// The room to the left of what stands beside something.
+/// The margin of a column to the right of another one.
 pub const COLUMN_MARGIN: Margin = Margin {
     left: 12,
     right: 0,
@@ -171,7 +171,7 @@ fn look(ui: &mut Ui, scene: &mut Scene) {
         ui.selectable_value(&mut look.layout, Layout::Beside, "side by side");
         ui.selectable_value(&mut look.layout, Layout::Over, "superimposed");
     });
-    // The name stands above: beside a box that is cut it has no room.
+    // The name stands above the box, which takes the whole width.
     let label = ui.label("colour");
     let chosen = ComboBox::from_id_salt("colour")
         .selected_text(look.colour.name())

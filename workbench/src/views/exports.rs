@@ -1,11 +1,11 @@
-//! What goes out: offers to choose from, written beside the drawing, then saved.
+//! Exports: offers to choose from, written in the background, then saved.
 
 use gelbench::results::Drawing;
 use gelbench_report::results::LineChart;
 
 use crate::logic::outputs::{FORMATS, Wanted};
 
-/// An offer: its name, and what goes out.
+/// An offer: its name, and what is exported.
 pub type Offer = (String, Wanted);
 
 /// A picture in every format; `what` is in the names of the offers, `name` in that of the file.

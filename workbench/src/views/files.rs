@@ -19,7 +19,7 @@ pub use recent::Recent;
 use super::app::Tab;
 use crate::logic::outputs::Written;
 
-/// Files that shall go out. Those of a document are the document and what stands beside it.
+/// Files to be saved. Those of a document are the document and the files that it names.
 pub struct Outgoing {
     /// The files.
     pub written: Written,
@@ -27,7 +27,7 @@ pub struct Outgoing {
     pub document: Option<Tab>,
 }
 
-/// What came of files.
+/// What happened to files.
 pub enum Event {
     /// One was chosen to be opened.
     Chosen(PathBuf),

@@ -77,22 +77,22 @@ impl Sheets {
         let range = span.range;
         let (above, bar) = area.split_top_bottom_at_y(area.bottom() - BAR);
         let (sheets, row) = above.split_top_bottom_at_y(above.bottom() - WARNINGS);
-        let over = table.scene().look.layout == Layout::Over;
-        let areas = rows(sheets, if over { 1 } else { models.len() });
-        let under = |row: &&Rect| background.hover_pos().is_some_and(|at| row.contains(at));
-        if let Some(row) = areas.iter().find(under).or(areas.first()) {
+        let overlaid = table.scene().look.layout == Layout::Over;
+        let areas = rows(sheets, if overlaid { 1 } else { models.len() });
+        let is_hovered = |row: &&Rect| background.hover_pos().is_some_and(|at| row.contains(at));
+        if let Some(row) = areas.iter().find(is_hovered).or(areas.first()) {
             self.closer.follow(ui, &background, row.center());
         }
         for (number, model) in models.iter().enumerate() {
-            let row_area = areas[if over { 0 } else { number }];
-            let line = if over { 15.0 * number as f32 } else { 0.0 };
+            let row_area = areas[if overlaid { 0 } else { number }];
+            let line = if overlaid { 15.0 * number as f32 } else { 0.0 };
             let position = Place {
                 ui,
                 painter: ui.painter().with_clip_rect(row_area),
                 table,
                 view: self.view(table.scene(), row_area - AROUND),
                 range,
-                outline_only: over && number > 0,
+                outline_only: overlaid && number > 0,
             };
             self.sheet(&position, *model);
             label(&position, *model, row_area.min + vec2(6.0, 4.0 + line));
@@ -104,7 +104,7 @@ impl Sheets {
                     released: false,
                     at: view.at([table.scene().size[0], 0.0]),
                 });
-            } else if number == 0 || !over {
+            } else if number == 0 || !overlaid {
                 let mut inside = ui.new_child(UiBuilder::new().max_rect(row_area));
                 inside.shrink_clip_rect(row_area);
                 let grip = grip::show(&inside, table.scene(), view, model.name());

@@ -1,4 +1,4 @@
-//! Studies of any kind: written here or dropped, run beside the drawing, their reports shown and given out.
+//! Studies of any kind: written here or dropped, run in the background, their reports shown and exported.
 
 use eframe::egui::{Align, Button, CollapsingHeader, RichText, ScrollArea, TextEdit, Ui};
 

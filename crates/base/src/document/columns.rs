@@ -203,8 +203,8 @@ impl Above {
     }
 }
 
-/// Whether a line is a row of numbers, beside which texts may stand: two of its fields are numbers, or one and all others are empty; and it is no
-/// line of units.
+/// Whether a line is a row of numbers, which may have texts too: two of its fields are numbers, or one is and all others are empty; and
+/// it is no line of units.
 fn is_row(line: &[String]) -> bool {
     let fields = || line.iter().map(|field| unquoted(field));
     let numbers = fields().filter(|field| is_number(field)).count();

@@ -85,7 +85,7 @@ fn similar(path: &Path) -> Option<PathBuf> {
     });
     let mut names: Vec<String> = names.collect();
     names.sort();
-    // A study is preferred to the picture beside it.
+    // A study is preferred to a picture of the same name.
     names.sort_by_key(|name| !name.ends_with(".toml"));
     let with_ending = names.iter().find(|name| {
         Path::new(name)
@@ -112,17 +112,17 @@ mod tests {
             read_bytes(folder.path(), 9),
             Err(FileFault::Folder)
         ));
-        let meant = |name: &str| match read_bytes(&folder.path().join(name), 9) {
+        let suggested = |name: &str| match read_bytes(&folder.path().join(name), 9) {
             Err(FileFault::Missing(path)) => similar(&path),
             other => panic!("{other:?}"),
         };
-        assert_eq!(meant("a"), Some(path.clone()));
-        assert_eq!(meant("b.txt"), Some(path.clone()));
-        assert_eq!(meant("other"), None);
+        assert_eq!(suggested("a"), Some(path.clone()));
+        assert_eq!(suggested("b.txt"), Some(path.clone()));
+        assert_eq!(suggested("other"), None);
         let [picture, study] = ["plate.png", "plate.toml"].map(|name| folder.path().join(name));
         std::fs::write(picture, "").unwrap();
         std::fs::write(&study, "").unwrap();
-        assert_eq!(meant("plate"), Some(study));
+        assert_eq!(suggested("plate"), Some(study));
         #[cfg(unix)]
         assert!(matches!(
             read_bytes(Path::new("/dev/zero"), 9),

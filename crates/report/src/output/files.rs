@@ -205,7 +205,7 @@ pub fn write_grids(folder: &mut dyn TakesFiles, series: &GridSeries) -> Result<(
 }
 
 /// Writes a document as `NAME.md`, with its pictures beside it, and as one self-contained `NAME.html`. Returns a warning for
-/// each picture that cannot be drawn, which stands in its place too, and for each file that was in the way.
+/// each picture that cannot be drawn, which the documents contain instead of it, and for each former file that was kept.
 ///
 /// # Errors
 /// [`Error::Write`] with the file that could not be written.
@@ -251,8 +251,8 @@ fn add_document(
 /// Begin of the names of files that do not have their own yet.
 const TEMPORARY: &str = ".gelbench-new-";
 
-/// Writes a file under a temporary name and then gives it its own, so that no half file ever has it. A file of that name that
-/// gelbench has not written is kept under another one, of which the warning tells.
+/// Writes a file under a temporary name and then gives it its own, so that no incomplete file ever has it. A file of that name that
+/// gelbench has not written is kept under another one, which the warning names.
 ///
 /// # Errors
 /// [`Error::Write`] with the path, also where it is a file that the program has read.

@@ -1,8 +1,8 @@
 //! A folder of results: written aside first, then moved into place.
 //!
 //! ```text
-//! open      the folder is made, locked and swept of what a killed run has left
-//! add       a file is written into a folder of its own beside the results that are there
+//! open      the folder is created and locked, and the unfinished files of a killed run are removed
+//! add       a file is written into a folder for unfinished files, apart from the former results
 //! finish    all files are moved into place; what the run before has written and this one has not is removed
 //! ```
 //!
@@ -347,7 +347,7 @@ pub fn kept(position: &Path) -> Diagnostic {
     Diagnostic::warning("", message).hint("name another place for results with --output")
 }
 
-/// A name beside a file's that no file has: `report.md.kept`, `report.md.kept-2` and so on.
+/// A name like that of a file which no file has: `report.md.kept`, `report.md.kept-2` and so on.
 pub fn free_name(path: &Path) -> PathBuf {
     let name = |number: usize| {
         let mut name = path.as_os_str().to_owned();

@@ -36,7 +36,7 @@ mod vectors;
 #[error("{0}")]
 pub struct PictureFault(String);
 
-/// A picture of a report, or the warning in its place.
+/// A picture of a report, or the warning that replaces it.
 pub type Drawn = Result<Vec<u8>, Diagnostic>;
 
 /// A drawing as a PNG for a screen.
@@ -50,7 +50,7 @@ pub fn png(drawing: &Drawing) -> Result<Vec<u8>, PictureFault> {
 /// A drawing as a file of a format; what moves is a PNG in any case.
 ///
 /// # Errors
-/// [`PictureFault`] where it cannot be drawn, whatever the reason: no picture is worth the numbers beside it.
+/// [`PictureFault`] where it cannot be drawn, whatever the reason: a study must not fail, and lose its numbers, for a picture.
 pub fn picture(
     drawing: &Drawing,
     format: PictureFormat,

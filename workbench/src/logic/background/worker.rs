@@ -11,7 +11,7 @@ use web_sys::{MessageEvent, WorkerOptions, WorkerType};
 
 use super::{Wake, Worker};
 
-/// The script beside the page that starts the program as a worker.
+/// The script in the folder of the page that starts the program as a worker.
 const SCRIPT: &str = "./worker.js";
 
 /// The way to a web worker and back; it ends with the link.

@@ -124,7 +124,7 @@ impl Workbench {
         text.is_some_and(|text| text != self.documents[tab as usize].saved)
     }
 
-    /// What is saved of a view: its document, and what stands beside it.
+    /// What is saved of a view: its document, and the files that the document names.
     fn written(&self, tab: Tab) -> Option<Written> {
         let scene = self.table.scene();
         let card = || (scene.card.reference(), scene.card.text.clone().into_bytes());

@@ -22,7 +22,7 @@ fn put<E: std::fmt::Display>(inbox: &Inbox, name: String, content: Result<Vec<u8
 /// Reads a dropped file into the inbox.
 #[cfg(not(target_arch = "wasm32"))]
 pub fn read(file: &egui::DroppedFileHandle, inbox: &Inbox, _: &egui::Context) {
-    // The complete path: files that a study names stand beside it.
+    // The complete path: files that a study names are looked for in its folder.
     let name = file.path().display().to_string();
     put(inbox, name, file.bytes());
 }

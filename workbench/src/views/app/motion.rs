@@ -80,8 +80,8 @@ impl Workbench {
 
     /// What is played, above the sheets.
     pub(super) fn player(&mut self, ui: &mut Ui) {
-        let worth = |moving: &&Playing| moving.has_begun() || moving.is_complete();
-        let Some(moving) = self.table.moving().filter(worth) else {
+        let is_shown = |moving: &&Playing| moving.has_begun() || moving.is_complete();
+        let Some(moving) = self.table.moving().filter(is_shown) else {
             return;
         };
         let (mut running, mut slowness) = (moving.running, moving.slowness);
@@ -92,8 +92,8 @@ impl Workbench {
             .filter_map(|model| moving.fault(model).cloned())
             .collect();
         let errors = Model::ALL.map(|model| 100.0 * moving.energy_error(model));
-        let strayed = errors.into_iter().fold(0.0, f64::max);
-        let mut wound = false;
+        let largest_error = errors.into_iter().fold(0.0, f64::max);
+        let mut time_was_set = false;
         ui.horizontal_wrapped(|ui| {
             let word = if running { "pause" } else { "play" };
             if ui.button(word).clicked() {
@@ -106,14 +106,14 @@ impl Workbench {
             let slider = Slider::new(&mut time, 0.0..=duration)
                 .custom_formatter(|time, _| format!("{time:.1}"))
                 .suffix(" ms");
-            wound = ui.add(slider.text("since the release")).changed();
+            time_was_set = ui.add(slider.text("since the release")).changed();
             let slower = Slider::new(&mut slowness, 1.0..=1000.0)
                 .logarithmic(true)
                 .custom_formatter(|times, _| format!("{times:.0}"))
                 .suffix(" ×");
             ui.add(slower.text("slower than real time"));
             if complete {
-                ui.label(format!("energy error {strayed:.2} %"));
+                ui.label(format!("energy error {largest_error:.2} %"));
             } else {
                 ui.spinner();
                 ui.label(format!("{:.0} % computed", 100.0 * computed / duration));
@@ -125,10 +125,10 @@ impl Workbench {
         let Some(moving) = self.table.moving() else {
             return;
         };
-        let changed = running != moving.running || slowness != moving.slowness || wound;
+        let changed = running != moving.running || slowness != moving.slowness || time_was_set;
         if let Some(moving) = self.table.moving_mut().filter(|_| changed) {
-            (moving.running, moving.slowness) = (running && !wound, slowness);
-            if wound {
+            (moving.running, moving.slowness) = (running && !time_was_set, slowness);
+            if time_was_set {
                 moving.show(1e-3 * time);
             }
         }

@@ -95,7 +95,7 @@ impl Files {
         self.show(&choice, Some(outgoing));
     }
 
-    /// Writes a document to a path that it was saved to before, or opened from; what stands beside it, beside that.
+    /// Writes a document to a path that it was saved to before, or opened from, and the files that it names into the same folder.
     pub fn save(&mut self, path: &Path, outgoing: Outgoing) {
         let placed = Placed::at(path, outgoing);
         self.write_unless_others(placed, None);
@@ -222,7 +222,7 @@ impl Files {
 }
 
 impl Outgoing {
-    /// A document has a name of its own, whatever stands beside it, and so has a file by itself.
+    /// The user names a document or a single file; several files without a document go into a folder.
     fn choice(&self) -> Choice {
         match &self.written.files[..] {
             [(name, _), others @ ..] if self.document.is_some() || others.is_empty() => {

@@ -9,7 +9,7 @@ pub struct Array {
     pub fields: Vec<String>,
     /// The numbers of entries along each index.
     pub shape: Vec<usize>,
-    /// The numbers, those of the last index and of one entry beside each other.
+    /// The numbers: the fields of an entry are adjacent, and the last index changes fastest.
     pub numbers: Vec<f64>,
 }
 
@@ -23,7 +23,7 @@ impl Array {
         }
     }
 
-    /// Whether it may be a column beside others: more than one plain number.
+    /// Whether it may be one of several columns of a table: more than one plain number.
     pub fn is_column(&self) -> bool {
         self.fields.is_empty() && self.numbers.len() > 1
     }

@@ -30,7 +30,7 @@ struct Entry<'a> {
     width: f64,
 }
 
-/// Around the names inside of an area, and between names beside one another.
+/// Around the names inside of an area, and between names in a row.
 const MARGIN: f64 = 8.0;
 const APART: f64 = 18.0;
 
@@ -50,7 +50,7 @@ pub(super) struct Legend<'a> {
 }
 
 impl<'a> Legend<'a> {
-    /// The legend of a chart with an area, where `is_free` tells which parts of it no line crosses. `left` and `right` are the
+    /// The legend of a chart with an area, where `is_free` is whether no line crosses a part of it. `left` and `right` are the
     /// ends of the room below the area, of which `bottom` is the upper end.
     pub fn of(
         chart: &'a LineChart,

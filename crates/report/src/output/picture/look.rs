@@ -34,7 +34,7 @@ const LIGHT_TO_DARK: [Colour; 9] = colours([
 /// The colours of lines on black, in the order of [`PALETTE`]: Okabe's and Ito's, the darker ones lighter.
 const ON_BLACK: [Colour; 6] = colours([0x56a0f0, 0xff7828, 0x00be8c, 0xe196c3, 0xf0dc5a, 0x96d7f5]);
 
-/// The colours of lines that even a printer without colours tells apart.
+/// The colours of lines that differ in a print without colours too.
 const PRINTED: [Colour; 6] = colours([0x004478, 0xb03a00, 0x46966e, 0x460a3c, 0xf0cd78, 0x9ba8eb]);
 
 /// Colours from their hexadecimal numbers.

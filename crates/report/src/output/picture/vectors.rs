@@ -1,4 +1,4 @@
-//! Pictures whose lines stay lines and whose words stay words: SVG, and what a PDF is made of.
+//! Pictures whose lines and words are not rasterized: SVG, and the content of PDF.
 
 use std::fmt::Write;
 
