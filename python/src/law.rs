@@ -1,4 +1,4 @@
-//! Laws that let a computation end.
+//! Laws at whose evaluation a computation can be stopped.
 
 use std::fmt;
 use std::sync::Arc;

@@ -1,4 +1,4 @@
-//! What a command ends with: its words, the warnings about its results, and the exit code.
+//! The end of a command: its message, the warnings about its results, and the exit code.
 
 use std::path::Path;
 

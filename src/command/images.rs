@@ -1,4 +1,4 @@
-//! What the command line says of camera images, and `gelbench track`.
+//! The options about camera images, and `gelbench track`.
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;

@@ -1,4 +1,4 @@
-//! What happens when the user breaks a command off, and how the same command is recognised when it is started again.
+//! What happens when the user interrupts a command, and how the same command is recognised when it is started again.
 
 use std::io::Write;
 use std::sync::{Arc, Mutex, PoisonError};

@@ -1,4 +1,4 @@
-//! Equilibria that a run keeps in its folder, for the same run after an interruption.
+//! Equilibria that a run stores in its folder, to go on from after an interruption.
 
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;

@@ -1,4 +1,4 @@
-//! `gelbench materials new` and `check`: cards of what is known of a material, and cards that are to be shared.
+//! `gelbench materials new` and `check`: cards from known moduli or parameters, and checks of cards that are to be shared.
 
 use std::path::{Path, PathBuf};
 

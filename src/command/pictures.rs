@@ -1,4 +1,4 @@
-//! What the command line says of pictures, as `[pictures]` does in a study.
+//! The options about pictures, which are those of `[pictures]` in a study.
 
 use clap::Args;
 

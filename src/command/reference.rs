@@ -1,4 +1,4 @@
-//! `gelbench keys`, `gelbench schema` and the studies of `gelbench new`: what the readers themselves ask for.
+//! `gelbench keys`, `gelbench schema` and the studies of `gelbench new`, from the keys that the readers look up.
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;

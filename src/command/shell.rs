@@ -1,4 +1,4 @@
-//! `gelbench completions` and `gelbench man`: what shells and manuals need of the command.
+//! `gelbench completions` and `gelbench man`: the command's completions for shells, and its manual pages.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! Printing: results to standard output, what deserves attention and progress to standard error.
+//! Printing: results to standard output, warnings, faults and progress to standard error.
 
 use std::collections::HashMap;
 use std::io::{self, IsTerminal, Write};

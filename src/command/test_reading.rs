@@ -1,4 +1,4 @@
-//! What the command line says of test data.
+//! The options about test data.
 
 use std::path::{Path, PathBuf};
 

@@ -1,4 +1,4 @@
-//! `gelbench workbench`: starts the window, which is a program of its own.
+//! `gelbench workbench`: starts the workbench, which is a separate program.
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};

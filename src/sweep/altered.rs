@@ -1,4 +1,4 @@
-//! A study with the keys of a run set.
+//! A study with the values that a run sets.
 
 use std::path::{Path, PathBuf};
 

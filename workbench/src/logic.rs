@@ -1,4 +1,4 @@
-//! What the workbench does, apart from how it looks: every state a value, every action a value.
+//! The state of the workbench and the actions that change it, without any drawing: both are values.
 
 pub mod background;
 pub mod deviations;

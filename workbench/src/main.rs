@@ -1,4 +1,4 @@
-//! The workbench on the desktop: `gelbench-workbench [FILE …] [--frames NUMBER]`; and on the page, which starts it itself.
+//! The workbench on the desktop: `gelbench-workbench [FILE …] [--frames NUMBER]`; and in the browser, where the page starts it.
 
 #[cfg(target_arch = "wasm32")]
 fn main() {}

@@ -1,4 +1,4 @@
-//! Frame times: the grip is pulled to and fro by itself, and every frame is timed.
+//! Frame times: the grip is moved to and fro without a user, and every frame is timed.
 
 use web_time::{Duration, Instant};
 

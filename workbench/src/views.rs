@@ -1,4 +1,4 @@
-//! How it looks: panels, sheets, charts. Nothing here computes; what a user does becomes an action.
+//! Panels, sheets and charts. Nothing here computes; what a user does becomes an action.
 
 pub mod app;
 pub mod chart;

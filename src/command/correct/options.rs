@@ -1,4 +1,4 @@
-//! What the command line says about a correction.
+//! The options of `gelbench correct`.
 
 use std::path::PathBuf;
 

@@ -1,4 +1,4 @@
-//! What is to be corrected, of what the command line says.
+//! The request for a correction, from the options of the command line.
 
 use super::options::Options;
 use gelbench_base::error::Error;

@@ -1,4 +1,4 @@
-//! The values of the options of `gelbench correct`.
+//! How the values of the options of `gelbench correct` are parsed.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! Undo and redo over any value: what was, what is, what was taken back.
+//! Undo and redo over any value: its former states, the present one, and those that were undone.
 
 /// A value with its past and its future.
 #[derive(Clone, Debug)]

@@ -1,4 +1,4 @@
-//! What a dropped file is: it finds its view by itself.
+//! The kinds of dropped files, which decide on the view that opens them.
 
 use gelbench::calibration::TestData;
 use gelbench::document::{Statements, with_files};

@@ -1,4 +1,4 @@
-//! A motion as it is played: what was computed of it, and what is shown now.
+//! A motion as it is played: the instants computed so far, and the one that is shown.
 
 use super::engine::Fault;
 use super::engine::motion::{MotionAnswer, MotionQuestion, MotionState, MovingFrame, WATER};

@@ -1,4 +1,4 @@
-//! The report of a study as plain data, to be shown and to be given out.
+//! The report of a study as plain data, to be shown and to be exported.
 
 use serde::{Deserialize, Serialize};
 

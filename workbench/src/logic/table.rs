@@ -1,4 +1,4 @@
-//! The table: what lies on it, what was found of it, what is still to be solved. It draws nothing and waits for nothing.
+//! The table: its scene, the solutions of the models, and what is still to be solved. It draws nothing and waits for nothing.
 
 use std::cell::OnceCell;
 use std::collections::BTreeMap;

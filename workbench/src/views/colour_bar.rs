@@ -1,4 +1,4 @@
-//! The scale of the colours below what they colour.
+//! The colour bar below the sheets.
 
 use eframe::egui::{
     Align2, Color32, FontId, Mesh as Triangles, Pos2, Rect, Shape, Stroke, Ui, pos2, vec2,

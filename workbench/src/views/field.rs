@@ -1,4 +1,4 @@
-//! Measured fields: files are dropped and looked at, conditions of edges are stated, the field is corrected and judged.
+//! Measured fields: files are dropped and shown, conditions of edges are stated, the field is corrected and judged.
 
 use std::path::Path;
 

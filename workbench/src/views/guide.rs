@@ -1,4 +1,4 @@
-//! The first minute: three sentences, and scenes that can be played with.
+//! The introduction: three sentences, and scenes to begin with.
 
 use eframe::egui::{Pos2, RichText, Ui};
 

@@ -1,4 +1,4 @@
-//! A question that must be answered before anything else goes on.
+//! A dialogue that must be answered before anything else can be done.
 
 use eframe::egui::{Context, Id, Key, Modal};
 

@@ -1,4 +1,4 @@
-//! What becomes of a file in the format of another program: the text of a table, or a refusal.
+//! The result of converting a file of another program: the text of a table, or a refusal.
 
 use crate::budget::{Budget, Need};
 

@@ -1,4 +1,4 @@
-//! Texts in the encodings of instruments and editors.
+//! Texts in the encodings that instruments and editors write.
 //!
 //! A byte-order mark decides; otherwise UTF-16 shows by its zeros, and the text is UTF-8 where all bytes fit. The remaining texts are distinguished
 //! by their pairs of bytes: GB18030 consists of pairs that begin as frequent characters do, Latin-1 has single letters among ASCII.

@@ -1,4 +1,4 @@
-//! Every key that a reader knows, found by reading.
+//! Every key that a reader knows, collected by letting it read.
 //!
 //! A file is read, every key that the reader looks up is added to it with a suitable value, and it is read again
 //! until no new key is looked up. Then every choice is given each of its names in turn, and keys that are looked up

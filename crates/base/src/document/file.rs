@@ -1,4 +1,4 @@
-//! Files that are read as a whole: regular files within a size.
+//! Files that are read as a whole: regular files up to a size.
 
 use std::fs::File;
 use std::io::{ErrorKind, Read};

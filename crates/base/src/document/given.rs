@@ -1,4 +1,4 @@
-//! Files that a program gives in place of those on disk: in a browser there is no disk.
+//! Files in memory that replace those on disk: in a browser there is no disk.
 
 use std::cell::RefCell;
 use std::collections::BTreeMap;

@@ -1,4 +1,4 @@
-//! The lines of a table: text without old line ends, separators, remarks, names.
+//! The lines of a table: line ends, separators, remarks, names.
 
 use std::ops::Range;
 

@@ -1,4 +1,4 @@
-//! A thread of its own.
+//! A thread that answers questions.
 
 use std::sync::mpsc::{Receiver, Sender, channel};
 

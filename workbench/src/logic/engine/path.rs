@@ -1,4 +1,4 @@
-//! From one place of the grip to another: Newton's method that goes on from the state before.
+//! From one position of the grip to another by Newton's method, which starts from the former state.
 
 use gelbench::error::Error;
 use gelbench::mesh::Mesh;

@@ -1,4 +1,4 @@
-//! The corrected plate in the hand: its climb, ready to follow the grip.
+//! The corrected plate while its grip is pulled: its climb, ready to follow the grip.
 
 use self_cell::self_cell;
 

@@ -1,4 +1,4 @@
-//! What the models are compared by, and what colours them.
+//! The quantities by which models are compared, and which colour them.
 
 use gelbench::mesh::Mesh;
 

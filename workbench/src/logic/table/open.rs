@@ -1,4 +1,4 @@
-//! Studies and cards that are laid on the table.
+//! Opening studies and cards on the table.
 
 use std::path::Path;
 

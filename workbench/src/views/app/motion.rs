@@ -1,4 +1,4 @@
-//! The sheet that was let go: when it begins, how it is played, what can be done meanwhile.
+//! The motion of a released sheet: when it begins, how it is played, what can be done meanwhile.
 
 use eframe::egui::{self, Slider, Ui};
 

@@ -1,4 +1,4 @@
-//! What goes out of the views: studies, fields, tables, pictures.
+//! Exports of the views: studies, fields, tables, pictures.
 
 use eframe::egui::Ui;
 

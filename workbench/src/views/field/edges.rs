@@ -1,4 +1,4 @@
-//! The mesh of a field with its edges: a click on one asks what is known of it.
+//! The mesh of a field with its edges: after a click on an edge its conditions can be stated.
 
 use eframe::egui::{
     Align2, Color32, ComboBox, FontId, Grid, Id, Popup, PopupAnchor, PopupCloseBehavior, Pos2,

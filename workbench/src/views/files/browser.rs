@@ -1,4 +1,4 @@
-//! Files that go out of a browser: downloads.
+//! Export of files from a browser: downloads.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! What values of TOML are as plain data.
+//! Values of TOML as plain data.
 
 use toml::de::DeValue;
 

@@ -1,4 +1,4 @@
-//! Keys that only the file itself states: whatever the defaults have is not read.
+//! Keys that are read from the file itself, whatever the defaults contain.
 
 use super::Section;
 use crate::document::Bound;

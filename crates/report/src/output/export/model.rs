@@ -1,4 +1,4 @@
-//! A problem in the words that all codes share.
+//! A problem in the terms that all codes share.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 

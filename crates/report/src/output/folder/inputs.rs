@@ -1,4 +1,4 @@
-//! Files that the results follow from: nothing may replace or remove them.
+//! Files that the results are computed from: nothing may replace or remove them.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,4 +1,4 @@
-//! A picture of marks above what is shaded, as a file of any format.
+//! A picture of marks above shaded areas, as a file of any format.
 
 use super::encode::encode;
 use super::letters::Letters;

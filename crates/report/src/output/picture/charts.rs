@@ -1,4 +1,4 @@
-//! Line charts one below the other. Everything is placed by the measured size of its words.
+//! Line charts one below the other. Everything is placed by the measured size of its texts.
 
 use plotters::coord::CoordTranslate;
 use plotters::element::{Circle, PathElement, Polygon, Rectangle as RectangleElement};

@@ -1,4 +1,4 @@
-//! Where plates lie in a picture, and the axes around them.
+//! The positions of plates in a picture, and the axes around them.
 
 use super::canvas::{EDGE, GAP, Sheet, Title};
 use super::look::Look;

@@ -1,4 +1,4 @@
-//! How loads and turns grow with time.
+//! How loads and rotations grow with time.
 
 use crate::output::export::model::{Constraint, Model};
 use crate::output::export::text::number;

@@ -1,4 +1,4 @@
-//! Where a file differs from the study, and what stands at its head.
+//! Where a file differs from the study, and the remarks at its head.
 
 use super::{Model, PartMaterial};
 use crate::material::{Code, CodeLaw};

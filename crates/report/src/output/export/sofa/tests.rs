@@ -1,4 +1,4 @@
-//! The scene is read again, and its springs are pulled by formulas of their own.
+//! The scene is read back, and the forces of its springs are computed by independent formulas.
 
 use std::sync::Arc;
 

@@ -1,4 +1,4 @@
-//! The laws in the words of other codes: the stresses that a code computes from what is exported are those of the law.
+//! The laws in the keywords of other codes: the stresses that a code computes from the exported file are those of the law.
 
 use super::published::{Exported, Sheet, published};
 use super::*;

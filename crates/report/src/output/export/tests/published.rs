@@ -1,4 +1,4 @@
-//! The energies that the manuals of the codes publish, of the parameters in a written file.
+//! The energies that the manuals of the codes give, with the parameters of an exported file.
 
 use super::*;
 

@@ -1,4 +1,4 @@
-//! The solids that stand for a sheet in FEBio.
+//! The solids that represent a sheet in FEBio.
 
 use std::collections::BTreeMap;
 

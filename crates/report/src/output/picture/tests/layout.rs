@@ -1,4 +1,4 @@
-//! No picture, however narrow and whatever its words, has words that are cut off or lie on one another.
+//! No text of a picture is cut off or overlaps another one, however narrow the picture and whatever its texts.
 
 use super::super::charts::Plan;
 use super::super::look::Look;
