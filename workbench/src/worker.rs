@@ -13,7 +13,7 @@ mod worker {
     use gelbench_workbench::logic::studies::Runner;
     use wasm_bindgen::prelude::*;
 
-    /// Answers a message as the worker of a name; nothing where there is no such worker, or the message is none of its questions.
+    /// Answers a message as the worker of a name; `None` where there is no such worker, or the message is no question for it.
     #[wasm_bindgen]
     pub fn work(worker: &str, question: &[u8]) -> Option<Vec<u8>> {
         match worker {

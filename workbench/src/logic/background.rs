@@ -32,7 +32,7 @@ pub trait Worker: Default + 'static {
     fn answer(&mut self, question: &Self::Question) -> Self::Answer;
 }
 
-/// Called when an answer has come.
+/// Called when there is an answer.
 pub type Wake = Arc<dyn Fn() + Send + Sync>;
 
 /// A worker at its place.

@@ -83,7 +83,7 @@ impl FieldQuestion {
 /// What is seen of the files before they are corrected.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Preview {
-    /// Layout, columns, units and axes in words.
+    /// A description of the layout, the columns, the units and the axes.
     pub understood: Vec<String>,
     /// Where the mesh comes from.
     pub mesh: String,
@@ -108,7 +108,7 @@ pub struct CorrectedFrame {
     pub fields: Vec<(String, Panel)>,
     /// Place and residual of every marker in mm, and its weight: 1 for a marker like the others, 0 for one far off.
     pub residuals: Vec<([f64; 2], [f64; 2], f64)>,
-    /// The verdict in words.
+    /// The verdict as a text.
     pub verdict: String,
     /// Whether the data are explained.
     pub explained: bool,
@@ -204,7 +204,7 @@ fn results(
     written::results(&pictures, study, estimates, stem, known, seconds)
 }
 
-/// Everything that `gelbench correct` writes, the file of what is known of the specimen, and the command line that repeats it.
+/// Everything that `gelbench correct` writes, the file of the conditions, and the command line that repeats the correction.
 ///
 /// # Errors
 /// As of the correction itself.
@@ -236,7 +236,7 @@ pub fn files(question: &FieldQuestion) -> Result<Vec<NamedFile>, Error> {
     })
 }
 
-/// What is known of the specimen, among the files that go out.
+/// The file of the conditions, among those that are saved.
 const KNOWN: &str = "known.toml";
 
 impl FieldQuestion {

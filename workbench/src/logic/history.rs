@@ -50,7 +50,7 @@ impl<T: Clone + PartialEq> History<T> {
         self.gesture = false;
     }
 
-    /// Whether there is something to take back, and to take again.
+    /// Whether there is something to undo, and to redo.
     pub fn steps(&self) -> [bool; 2] {
         [!self.past.is_empty(), !self.future.is_empty()]
     }
@@ -63,7 +63,7 @@ impl<T: Clone + PartialEq> History<T> {
         }
     }
 
-    /// Does again what was taken back.
+    /// Redoes what was undone last.
     pub fn redo(&mut self) {
         if let Some(after) = self.future.pop() {
             self.past.push(std::mem::replace(&mut self.now, after));

@@ -26,10 +26,10 @@ use super::studies::{NamedFile, StudyQuestion, paths};
 pub const FORMATS: [(&str, PictureFormat); 2] =
     [("PNG", PictureFormat::Png), ("SVG", PictureFormat::Svg)];
 
-/// The field of a model as it is shown: ux, uy of node after node in mm, and what colours the nodes.
+/// The field of a model as it is shown: ux, uy of node after node in mm, and the values that colour the nodes.
 pub type ShownField = (Model, Vec<f64>, Vec<f64>);
 
-/// What shall go out.
+/// What is to be exported.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub enum Wanted {
     /// A picture under a name without its ending.
@@ -48,7 +48,7 @@ pub enum Wanted {
     Study(StudyQuestion),
 }
 
-/// What goes out: a name for all of it, and the files.
+/// An export: its name, and its files.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct Written {
     /// The name of a folder for them.
@@ -58,7 +58,7 @@ pub struct Written {
 }
 
 impl Written {
-    /// A file by itself.
+    /// A single file.
     pub fn file(file: NamedFile) -> Self {
         Self {
             name: file.0.clone(),
@@ -67,7 +67,7 @@ impl Written {
     }
 }
 
-/// Writes what goes out.
+/// Writes an export.
 #[derive(Default)]
 pub struct Writer;
 
@@ -136,7 +136,7 @@ fn lines(chart: &LineChart) -> String {
     text
 }
 
-/// The name of a model in names of files, as `gelbench run` has it.
+/// The name of a model in names of files, as `gelbench run` writes it.
 fn file_name(model: Model) -> &'static str {
     MODELS[model as usize].key
 }

@@ -21,9 +21,9 @@ const SHOWN_PERIOD: f64 = 2.0;
 pub struct Playing {
     /// Its number.
     pub number: u64,
-    /// The scene that was let go.
+    /// The scene whose grip was released.
     pub scene: Scene,
-    /// The damping that it was let go with, in MPa·s.
+    /// The damping of the motion in MPa·s.
     pub damping: f64,
     next: [Option<MotionState>; 3],
     asked: [bool; 3],
@@ -37,7 +37,7 @@ pub struct Playing {
     clock: f64,
     /// Seconds on the screen for one of the motion.
     pub slowness: f64,
-    /// Whether it is played, or stands still.
+    /// Whether it is played or paused.
     pub running: bool,
 }
 
@@ -208,7 +208,7 @@ impl Playing {
         Some((&frames[wanted.min(last)], wanted <= last))
     }
 
-    /// The instant at which a model was let go.
+    /// The instant at which a model was released.
     pub fn first(&self, model: Model) -> Option<&MovingFrame> {
         self.frames[model as usize].first()
     }

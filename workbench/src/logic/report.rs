@@ -16,7 +16,7 @@ pub struct Report {
     pub blocks: Vec<Block>,
     /// The pictures of its blocks.
     pub figures: Vec<Drawing>,
-    /// Files that go out: name and content.
+    /// Files to be saved: name and content.
     pub files: Vec<(String, Vec<u8>)>,
     /// Computing time in s.
     pub seconds: f64,

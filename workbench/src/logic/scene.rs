@@ -90,7 +90,7 @@ pub enum Colour {
 /// How models are laid out.
 #[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq, Serialize)]
 pub enum Layout {
-    /// Each by itself.
+    /// Side by side.
     Beside,
     /// One on top of the other.
     Over,
@@ -208,7 +208,7 @@ impl CardFile {
         })
     }
 
-    /// Whether gelbench brings it along as it is.
+    /// Whether it is a card of gelbench, unchanged.
     pub fn is_shipped(&self) -> bool {
         Self::shipped(&self.name).is_some_and(|card| card.text == self.text)
     }
@@ -237,7 +237,7 @@ impl Scene {
         }
     }
 
-    /// Whether two scenes have the same sheet, whatever is done with it.
+    /// Whether two scenes have the same sheet, with any grip and look.
     pub fn same_sheet(&self, other: &Self) -> bool {
         self.outline == other.outline
             && self.size == other.size

@@ -99,7 +99,7 @@ impl Scene {
     /// The scene of a study; cards that it names by a path are looked for in `folder`, then among `cards`.
     ///
     /// # Errors
-    /// [`Error::Input`] with every fault of the study, or where it is none of a sheet between two grips.
+    /// [`Error::Input`] with every fault of the study, or where it is not one of a sheet between two grips.
     pub fn open(file: &Path, text: &str, cards: &[CardFile]) -> Result<Self, Error> {
         let enclosed = text.lines().find_map(|line| line.strip_prefix(CARD));
         let enclosed = enclosed.and_then(|card| serde_json::from_str(card).ok());

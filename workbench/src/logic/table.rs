@@ -162,7 +162,7 @@ impl Table {
         self.deviations.get(model as usize)?.as_ref()
     }
 
-    /// Stretch and force of a model as they were pulled.
+    /// The stretches and forces of a model through which its grip was pulled.
     pub fn curve(&self, model: Model) -> Vec<[f64; 2]> {
         let points = self.curves[model as usize].iter();
         points
@@ -185,7 +185,7 @@ impl Table {
         self.message.as_ref()
     }
 
-    /// Whether there is something to take back, and to take again.
+    /// Whether there is something to undo, and to redo.
     pub fn steps(&self) -> [bool; 2] {
         self.scene.steps()
     }

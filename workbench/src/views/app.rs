@@ -80,7 +80,7 @@ pub struct Workbench {
     /// Whether the window closes now.
     closes: bool,
     damping: f64,
-    /// Whether the sheet is let go when the mouse lets the grip go, and whether it is to be now.
+    /// Whether the sheet is released when the mouse releases the grip, and whether it is to be now.
     springs_back: bool,
     lets_go: bool,
     sheets: Sheets,
@@ -147,7 +147,7 @@ impl Workbench {
         bench
     }
 
-    /// This workbench, pulling by itself and measuring its frames.
+    /// This workbench, which moves the grip without a user and times its frames.
     #[must_use]
     pub fn measuring(self, measure: Measure) -> Self {
         Self {
@@ -252,7 +252,7 @@ impl Workbench {
         let pressed =
             |shortcut: &KeyboardShortcut| ui.input_mut(|input| input.consume_shortcut(shortcut));
         let writes = ui.ctx().text_edit_focused();
-        // An editor takes back what was typed into it.
+        // An editor has its own undo.
         if self.shows_table() && !writes {
             let redo = KeyboardShortcut::new(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
             if pressed(&redo) || pressed(&REDO) {
@@ -288,7 +288,7 @@ impl Workbench {
         }
     }
 
-    /// Whether the view shows what lies on the table, so that it may be taken back there.
+    /// Whether the view shows the table, whose actions can then be undone in it.
     fn shows_table(&self) -> bool {
         matches!(self.tab, Tab::Sheet | Tab::Material)
     }

@@ -88,7 +88,7 @@ pub fn show(ui: &mut Ui, name: &str, chart: &LineChart, height: f32) {
     });
 }
 
-/// What lies between a line there and a line back over the same places.
+/// The area between the first half of a line and the second, which runs back over the same abscissas.
 fn between(
     line: &gelbench_report::results::Line,
     of_x: fn(f64) -> f64,

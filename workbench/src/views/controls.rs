@@ -19,7 +19,7 @@ pub const COLUMN_MARGIN: Margin = Margin {
     bottom: 0,
 };
 
-/// Shows all controls; the scene as it shall be, and whether something is held.
+/// Shows all controls; the changed scene, and whether a control is held.
 pub fn show(ui: &mut Ui, table: &Table) -> (Scene, bool) {
     let mut scene = table.scene().clone();
     let mut held = false;

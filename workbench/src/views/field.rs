@@ -30,7 +30,7 @@ const WIDE: f32 = 900.0;
 /// How far from an edge or a corner a click may be, in points: as wide as a finger.
 const REACH: f32 = 14.0;
 
-/// The field that comes along, with noise, outliers and what is known of its edges.
+/// The example, a field with noise, outliers and conditions of its edges.
 const EXAMPLE: &[u8] = include_bytes!("../../../examples/measured_plate.csv");
 
 /// The state of the view.
@@ -138,7 +138,7 @@ impl Fields {
         question
     }
 
-    /// Corrects the field that is there.
+    /// Corrects the field.
     pub fn correct(&mut self) {
         if !self.question.files.is_empty() {
             self.ask(true);
@@ -181,7 +181,7 @@ impl Fields {
         self.answer.as_ref()
     }
 
-    /// What of it may go out, by name.
+    /// Its exports, by name.
     pub fn offers(&self) -> Vec<(String, Wanted)> {
         let Some(Ok(FieldAnswer { preview, corrected })) = &self.answer else {
             return Vec::new();
@@ -205,7 +205,7 @@ impl Fields {
         offers
     }
 
-    /// Shows the view; a file of the results that shall go out.
+    /// Shows the view; a file of the results that the user wants to save.
     pub fn show(&mut self, ui: &mut Ui, table: &mut Table) -> Option<NamedFile> {
         let scroll = ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             self.files(ui);
@@ -234,7 +234,7 @@ impl Fields {
         scroll.inner
     }
 
-    /// What is stated about the field, and what is seen of it.
+    /// The statements about the field, and its picture.
     fn question(
         &mut self,
         ui: &mut Ui,

@@ -33,9 +33,9 @@ pub enum Event {
     Chosen(PathBuf),
     /// Files were written.
     Saved {
-        /// The view whose document they are, and where that is, if it is anywhere.
+        /// The view whose document they are, and its path; a download has none.
         document: Option<(Tab, Option<PathBuf>)>,
-        /// Where they are, in words.
+        /// A sentence that says where they are.
         message: String,
     },
     /// Nothing was written, for a reason.

@@ -26,7 +26,7 @@ pub struct Materials {
     chosen: usize,
     /// The points of the tests, as they were read last.
     pub seen: Option<LineChart>,
-    /// The card that the curves are of, as it was read last.
+    /// The card of the curves, as it was read last.
     read: Option<(CardFile, Result<Card, Fault>)>,
 }
 
@@ -99,7 +99,7 @@ impl Materials {
         self.ranking.as_ref()
     }
 
-    /// What of it may go out, by name.
+    /// Its exports, by name.
     pub fn offers(&self) -> Vec<(String, Wanted)> {
         let mut offers = Vec::new();
         if let Some((_, Ok(card))) = &self.read {

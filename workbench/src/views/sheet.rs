@@ -125,7 +125,7 @@ impl Sheets {
         held
     }
 
-    /// The span of the colours of all models that are shown, as it was found when they last changed.
+    /// The span of the colours of all models that are shown, which is computed when they change.
     fn span(&mut self, table: &Table, models: &[Model]) -> Span {
         if let Some((_, span)) = self.span.filter(|(known, _)| *known == table.revision()) {
             return span;
@@ -138,7 +138,7 @@ impl Sheets {
         span
     }
 
-    /// The part of the plane that is seen: it grows while the grip is pulled, and does not move under it.
+    /// The part of the plane that is seen: while the grip is pulled it only grows.
     fn view(&mut self, scene: &Scene, screen: Rect) -> View {
         let now = room(scene);
         self.room = [0, 1].map(|axis| f64::max(self.room[axis], now[axis]));

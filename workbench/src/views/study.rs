@@ -33,7 +33,7 @@ pub struct Studies {
 pub enum Asks {
     /// Another study in the place of this one.
     Example(String, &'static str),
-    /// A file of the results goes out.
+    /// A file of the results is to be saved.
     File(NamedFile),
 }
 
@@ -87,7 +87,7 @@ impl Studies {
         self.report.as_ref()
     }
 
-    /// What of it may go out, by name.
+    /// Its exports, by name.
     pub fn offers(&self) -> Vec<Offer> {
         let all = "everything that `gelbench run` writes".to_owned();
         let mut offers = vec![(all, Wanted::Study(self.question()))];

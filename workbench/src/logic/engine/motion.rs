@@ -28,7 +28,7 @@ pub const WATER: f64 = 1e-9;
 /// A sheet in motion.
 #[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
 pub struct MotionState {
-    /// Time since the grip let go in s.
+    /// Time since the release of the grip in s.
     pub time: f64,
     /// ux, uy of node after node in mm.
     pub displacement: Vec<f64>,

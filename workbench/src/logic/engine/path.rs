@@ -23,7 +23,7 @@ struct GripPath<'a> {
     held: Vec<bool>,
     /// The field before.
     from: &'a [f64],
-    /// What the motion of the grip changes of it, linear between the grips.
+    /// Its change by the motion of the grip, linear between the two positions.
     change: Vec<f64>,
 }
 

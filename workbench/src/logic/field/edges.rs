@@ -34,7 +34,7 @@ impl Edge {
         [Self::Unnamed, Self::Free, Self::Rigid, known, Self::Unknown]
     }
 
-    /// What its kind is called.
+    /// The name of its kind.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Unnamed => "the data decide",
@@ -88,7 +88,7 @@ impl Edge {
     }
 }
 
-/// What is known of a specimen as the file that `gelbench correct --study` takes.
+/// The conditions of a specimen as the file that `gelbench correct --study` takes.
 pub fn written(edges: &BTreeMap<String, Edge>, edge_gap: &str) -> String {
     let mut text = String::from("# What is known of the specimen besides its markers.\n");
     if !edge_gap.trim().is_empty() {

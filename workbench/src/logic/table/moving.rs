@@ -125,7 +125,7 @@ impl Table {
         };
         match moving.frame(model) {
             Some((frame, _)) => Some(wide(&frame.values)),
-            // What was held has another colour where a motion has none of that kind.
+            // A motion lacks some of the quantities that colour a held sheet.
             None if self.shown_colour() == self.scene().look.colour => self.values(model),
             None => None,
         }

@@ -37,7 +37,7 @@ impl Table {
         }
     }
 
-    /// Takes a card and makes the sheet of it; `gesture` where something is held, such as the slider of a parameter.
+    /// Takes a card as the sheet's material; `gesture` while a control is held, such as the slider of a parameter.
     pub fn take_card(&mut self, card: CardFile, gesture: bool) {
         self.remember(&card);
         let scene = Box::new(Scene {

@@ -105,7 +105,7 @@ impl Workbench {
         match tab {
             Tab::Sheet => Some(self.table.scene().study()),
             Tab::Study => Some(self.studies.text.clone()),
-            // A card of the user's own stands in the study of the sheet.
+            // A card of the user is enclosed in the study of the sheet.
             Tab::Material | Tab::Field => None,
         }
     }

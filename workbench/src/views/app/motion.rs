@@ -42,7 +42,7 @@ impl Workbench {
         self.table.act(Action::LetGo { damping });
     }
 
-    /// Lets go, and what it is let go with.
+    /// The button that releases the sheet, and the damping of its motion.
     pub(super) fn motion_controls(&mut self, ui: &mut Ui) {
         ui.horizontal_wrapped(|ui| {
             let hint = "releases the grip: the sheet moves freely; Escape grips it again";

@@ -9,7 +9,7 @@ use crate::views::exports::{self, Offer};
 use crate::views::figures;
 
 impl Workbench {
-    /// What may go out of the view that is shown, to choose from.
+    /// The exports of the view that is shown, to choose from.
     pub(super) fn offered(&mut self, ui: &mut Ui) {
         #[cfg(target_arch = "wasm32")]
         if self.tab == Tab::Sheet && ui.button("copy a link to this sheet").clicked() {

@@ -82,7 +82,7 @@ impl Fields {
         }
     }
 
-    /// Asks what is known of the edge that was clicked.
+    /// Asks for the conditions of the edge that was clicked.
     fn ask_of_edge(&mut self, ui: &Ui, response: &Response) {
         let Some((name, position)) = self.asked.clone() else {
             return;

@@ -22,7 +22,7 @@ impl Files {
         Self::default()
     }
 
-    /// Gives files to the user: one by itself, several as an archive.
+    /// Downloads files: a single one as it is, several as an archive.
     pub fn give(&mut self, outgoing: Outgoing) {
         let written = &outgoing.written;
         let given = match &written.files[..] {
@@ -49,7 +49,7 @@ impl Files {
         std::mem::take(&mut self.events)
     }
 
-    /// The browser asks by itself where a download goes.
+    /// The browser asks where a download goes.
     pub fn ask(&mut self, _: &Context) -> bool {
         false
     }

@@ -37,7 +37,7 @@ pub type Choose = Box<dyn Fn(&Choice, Option<&Path>) -> Chosen>;
 
 /// A dialogue that is open.
 struct Dialogue {
-    /// What goes out; nothing where a file is to be opened.
+    /// The files to be saved; `None` where a file is to be opened.
     outgoing: Option<Outgoing>,
     chosen: Chosen,
     begun: Instant,
@@ -158,7 +158,7 @@ impl Files {
         }
     }
 
-    /// Whether a file is there with other contents than those that shall be written, and than the workbench has written.
+    /// Whether a file exists whose contents are neither those to be written nor those that the workbench has written.
     fn is_of_others(&self, path: &Path, content: &[u8]) -> bool {
         match fs::read(path) {
             Ok(there) => there != content && self.written.get(path) != Some(&there),
