@@ -285,7 +285,7 @@ fn exit_code(outcome: Outcome) -> u8 {
     })
 }
 
-/// Performs a command on each of some studies, whatever the others are; the exit code is the largest of theirs.
+/// Performs a command on each of some studies, even if it fails on others; the exit code is the largest of theirs.
 fn each(studies: &[PathBuf], perform: impl Fn(&Path) -> Outcome) -> Outcome {
     let codes = studies.iter().map(|study| exit_code(perform(study)));
     Ok(codes.max().unwrap_or_default())

@@ -76,7 +76,7 @@ struct Comparison {
     models: ModelFields,
 }
 
-/// Compares, prints, and writes what is asked for.
+/// Compares, prints, and writes the requested files.
 pub fn run(options: Options) -> Outcome {
     options.printed.choose();
     let compared = compute(&options)?;
@@ -216,7 +216,7 @@ fn table(compared: &Comparison, differences: &[Difference], with_mesh: bool) -> 
         .block()
 }
 
-/// The finite elements' own error, in words.
+/// A sentence on the finite elements' own error.
 fn discretisation_error(compared: &Comparison) -> String {
     match compared.models.own_percent {
         Some(percent) => format!("The finite elements' own error is estimated as {percent:.4} %."),

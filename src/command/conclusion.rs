@@ -12,7 +12,7 @@ use gelbench_report::results::{Check, End, Outcome, Results};
 /// The exit code of a study of which a model has no solution.
 const NO_SOLUTION: u8 = 3;
 
-/// Prints the results in words, then warnings, and decides on the exit code.
+/// Prints the summary of the results, then warnings, and decides on the exit code.
 pub fn conclude(results: &[Results], words: &str) -> terminal::Outcome {
     print(words)?;
     let outcomes = || results.iter().map(|results| &results.outcome);
@@ -29,14 +29,14 @@ pub fn conclude(results: &[Results], words: &str) -> terminal::Outcome {
     Ok(u8::from(!results.iter().all(Results::passed)))
 }
 
-/// Moves all files into their folder, prints the report and the results in words, and decides on the exit code.
+/// Moves all files into their folder, prints the report and the summary of the results, and decides on the exit code.
 pub fn finish(folder: ResultFolder, results: Results) -> terminal::Outcome {
     let words = moved_into_place(folder, &results)?;
     print_report(|| results.json())?;
     conclude(&[results], &words)
 }
 
-/// Moves all files into their folder; the results in words.
+/// Moves all files into their folder; the summary of the results.
 pub fn moved_into_place(folder: ResultFolder, results: &Results) -> Result<String, Error> {
     let path = folder.path().to_owned();
     let files = folder.finish()?;

@@ -11,7 +11,7 @@ pub const EXIT_CODE: u8 = 70;
 /// reported as a fault of the file, and a picture that cannot be drawn is reported as a warning.
 const CAUGHT: [&str; 4] = ["vtkio", "plotters", "tiny-skia", "output/picture"];
 
-/// Performs work and returns its exit code, or [`EXIT_CODE`] where it panics. What it was writing is taken away by then: files
+/// Performs work and returns its exit code, or [`EXIT_CODE`] where it panics. What it was writing has been removed by then: files
 /// are written aside first.
 pub fn contained(work: impl FnOnce() -> u8) -> u8 {
     panic::set_hook(Box::new(report));

@@ -49,7 +49,7 @@ pub fn run(options: Options) -> Outcome {
     }
 }
 
-/// Corrects every frame of one specimen by itself.
+/// Corrects every frame of one specimen independently.
 fn each_frame(options: Options, job: Job) -> Outcome {
     let study = options.study.as_ref().unwrap_or(&options.fields[0]);
     let job = Job {

@@ -116,7 +116,7 @@ pub fn run(options: &Options) -> Outcome {
     Ok(0)
 }
 
-/// The problem in the other code's words, on the mesh that is asked for.
+/// The problem in the other code's keywords, on the chosen mesh.
 fn input_file(
     title: &str,
     specimen: &Specimen,

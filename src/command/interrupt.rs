@@ -16,7 +16,7 @@ pub fn attend() {
     // Without a handler the system ends the command, and the next one sweeps what it has left.
     let _ = ctrlc::set_handler(|| {
         let unfinished = UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner);
-        // Held until the end: what was taken away is not written again meanwhile.
+        // Locked until the end: files that were removed are not written again meanwhile.
         let broken_off = unfinished.as_ref().map(|folder| folder.break_off());
         let remains = match broken_off.as_ref().map(|run| run.remains) {
             None | Some(Remains::Nothing) => {
@@ -32,7 +32,7 @@ pub fn attend() {
     });
 }
 
-/// Names the folder whose unfinished results an interrupt takes away.
+/// Names the folder whose unfinished results an interrupt removes.
 pub fn guard(folder: &ResultFolder) {
     let mut unfinished = UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner);
     *unfinished = Some(folder.unfinished());

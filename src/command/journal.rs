@@ -34,7 +34,7 @@ pub struct FolderJournal {
 }
 
 impl FolderJournal {
-    /// Reads what a run before has left in a folder.
+    /// Reads the equilibria that a former run has left in a folder.
     pub fn open(mut folder: ResultFolder) -> Self {
         let mut before: BTreeMap<usize, Vec<Milestone>> = BTreeMap::new();
         let mut parts = 0;
@@ -79,7 +79,7 @@ impl FolderJournal {
         )
     }
 
-    /// Writes what is not written yet, unless that has failed before.
+    /// Writes the equilibria that are not written yet, unless that has failed before.
     fn write(&self) {
         let (part, milestones) = (self.parts.get(), self.milestones.take());
         if self.fault.borrow().is_some() {

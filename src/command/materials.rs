@@ -155,7 +155,7 @@ fn compare(names: &[String], file: &Path) -> Outcome {
     Ok(0)
 }
 
-/// Draws what was asked for and nothing else: a picture that cannot be drawn is a fault here.
+/// Draws the requested picture; that it cannot be drawn is a fault here, as there is no other result.
 fn save_picture(file: &Path, drawing: &Drawing) -> Result<(), Error> {
     let picture = output::png(drawing).map_err(|fault| Error::write(file, fault))?;
     save(file, &picture)

@@ -135,7 +135,7 @@ impl NewCard {
             .join(", ")
     }
 
-    /// The path of the card: from its name, else from the law and what is stated.
+    /// The path of the card: from its name, else from the law and the stated values.
     fn path(&self, statement: &str) -> Result<PathBuf, Error> {
         let name = self.name.clone().unwrap_or_else(|| {
             let plain = |c: char| {
@@ -166,7 +166,7 @@ impl NewCard {
     }
 }
 
-/// Writes a card of what is known.
+/// Writes a card of known moduli or parameters.
 pub fn new_card(options: &NewCard) -> Outcome {
     let statement = options.statement();
     let title = format!("{}: {statement}", options.law.name);

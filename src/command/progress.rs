@@ -78,7 +78,7 @@ impl Progress {
         }
     }
 
-    /// Says what is being computed.
+    /// Shows what is being computed.
     pub fn report(&self, what: &str) {
         match self {
             Self::Quiet => {}

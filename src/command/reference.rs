@@ -74,7 +74,7 @@ impl FileKind {
         }
     }
 
-    /// Every key that its reader asks for.
+    /// Every key that its reader looks up.
     pub fn keys(self) -> Vec<FoundKey> {
         let read = |text: &str| -> Vec<Key> {
             match (self, self.case()) {
@@ -225,7 +225,7 @@ fn quoted(names: &[String]) -> String {
     names.join(", ")
 }
 
-/// What a key takes, in words.
+/// A description of the values of a key.
 fn takes(takes: &Takes) -> String {
     let integer = |[low, high]: &[usize; 2]| {
         if *high > 1 << 40 {

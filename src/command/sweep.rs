@@ -140,7 +140,7 @@ pub fn run(options: Options) -> Outcome {
     Ok(u8::from(failed > 0))
 }
 
-/// The sweep that is asked for.
+/// The sweep that the options describe.
 fn sweep(options: &Options) -> Result<Sweep, Error> {
     let variables = options.vary.iter().map(|text| Variable::parse(text));
     let variables = variables.collect::<Result<_, _>>()?;

@@ -52,7 +52,7 @@ pub fn columns_of_errors() -> Option<usize> {
     columns(terminal_size::terminal_size_of(io::stderr()))
 }
 
-/// `COLUMNS`, as shells and tests state it, goes before what a terminal says of itself.
+/// `COLUMNS`, as shells and tests state it, precedes the width that the terminal reports.
 fn columns(terminal: Option<(terminal_size::Width, terminal_size::Height)>) -> Option<usize> {
     /// Narrower lines cannot be read.
     const LEAST: usize = 20;
@@ -96,7 +96,7 @@ pub fn print(text: &str) -> Result<(), Error> {
     }
 }
 
-/// Prints what is for programs as it is.
+/// Prints output for programs unchanged.
 pub fn print_data(text: &str) -> Result<(), Error> {
     print_to(&mut io::stdout().lock(), text)
 }
@@ -149,7 +149,7 @@ pub fn complain(error: &Error) {
     let _ = write!(io::stderr(), "{}", wrapped(&words, columns_of_errors()));
 }
 
-/// The words of some faults; of many with one cause the first ones stand for all.
+/// The text of some faults; of many with one cause only the first ones.
 fn text_of(faults: &[Diagnostic], words: &dyn Fn(&Diagnostic) -> String) -> String {
     const OF_ONE_CAUSE: usize = 3;
     let (mut text, mut more) = (String::new(), 0);

@@ -27,9 +27,9 @@ pub struct BaseStudy {
     pub path: PathBuf,
     /// Its text.
     pub text: String,
-    /// Files in memory, by the names that the text has for them: cards that stand on no disk.
+    /// Files in memory, by the names in the text: cards that are on no disk.
     pub files: Vec<File>,
-    /// What each run may ask for.
+    /// The cost that each run may have.
     pub budget: Budget,
 }
 

@@ -111,7 +111,7 @@ impl FittedParameters {
         })
     }
 
-    /// The keys of a study that stand for them.
+    /// The keys of a study for them.
     pub fn keys(&self) -> impl Iterator<Item = String> {
         self.keys.iter().map(|key| format!("material.{key}"))
     }

@@ -106,7 +106,7 @@ fn without_rounding(all: &[Statistics]) -> impl Iterator<Item = &Statistics> {
     })
 }
 
-/// What a figure is, whatever its model, its group and its axis: `force_N` of `corrected.right.force_N.y@1`.
+/// The quantity of a figure, without its model, its group and its axis: `force_N` of `corrected.right.force_N.y@1`.
 fn quantity(name: &str) -> &str {
     let (name, _) = parts_of(name);
     let name = name

@@ -8,7 +8,7 @@ use super::variable::{Setting, headed, key_and_unit};
 use gelbench_base::document::{read_records, write_records};
 use gelbench_base::error::Error;
 
-/// The columns before those of the figures, but for the keys, and those behind them.
+/// The heads before those of the keys and figures, and those after them.
 const FIRST: &str = "run";
 const LAST: [&str; 3] = ["passed", "fault", "warnings"];
 

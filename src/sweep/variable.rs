@@ -203,7 +203,7 @@ pub fn key_and_unit(head: &str) -> (&str, &str) {
         .unwrap_or((head, ""))
 }
 
-/// Two numbers with one unit, which may stand behind the second alone.
+/// Two numbers with one unit, which the first may omit.
 fn pair(first: &str, second: &str) -> Result<([f64; 2], String), String> {
     let read = |text: &str| {
         let read_number = number(text.trim()).map(|(value, unit)| (value, unit.to_owned()));
@@ -245,7 +245,7 @@ fn misspelt_range(text: &str) -> Option<String> {
     Some(format!("{low}..{high} {unit}").trim_end().to_owned())
 }
 
-/// A finite number and what stands behind it.
+/// A finite number and the text after it.
 fn number(text: &str) -> Option<(f64, &str)> {
     let (digits, unit) = text.split_at(number_length(text));
     let value: f64 = digits.parse().ok()?;

@@ -26,7 +26,7 @@ pub fn doubts(differences: &[Difference], at: f64) -> Vec<Diagnostic> {
             Diagnostic::warning("", message).hint("state the file's load factor with --factor")
         })
     });
-    // The finite elements stand first.
+    // The finite elements come first.
     let shifted = differences
         .first()
         .filter(|difference| doubt.is_none() && difference.is_shifted());

@@ -298,7 +298,7 @@ fn is_unrelated(path: &Path, new: &[u8]) -> bool {
     !there.is_empty() && there != new && !begin.contains("gelbench")
 }
 
-/// Removes temporary files of processes that were killed: those that nobody holds any more after a minute.
+/// Removes temporary files of processes that were killed: those that no process has locked after a minute.
 fn sweep(folder: &Path) {
     const MINUTE: Duration = Duration::from_secs(60);
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();

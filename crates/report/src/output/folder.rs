@@ -242,7 +242,7 @@ impl ResultFolder {
         let folder = aside.parent().unwrap_or(&self.path);
         // Nobody who breaks the run off takes the folder away in the middle of a file, or finds one written afterwards.
         let _growing = self.unfinished.growing()?;
-        // The folder may have been taken away while the results were computed.
+        // The folder may have been removed while the results were computed.
         fs::create_dir_all(folder).map_err(fault)?;
         let mut file = File::create(&aside).map_err(fault)?;
         file.write_all(bytes).map_err(fault)?;
@@ -307,7 +307,7 @@ impl Drop for ResultFolder {
     }
 }
 
-/// Refuses a folder for results that is a file, or lies in one.
+/// Refuses a folder for results that is a file, or whose path leads through one.
 ///
 /// # Errors
 /// [`Error::Write`] with the file that is in the way.
@@ -376,7 +376,7 @@ fn folders(path: &Path, before: &Manifest) -> BTreeSet<PathBuf> {
         .collect()
 }
 
-/// Removes what runs that were killed have left, but for the folder `kept`.
+/// Removes the unfinished files of runs that were killed, except the folder `kept`.
 fn sweep(path: &Path, kept: Option<&str>) {
     let entries = fs::read_dir(path).into_iter().flatten().flatten();
     let is_leftover = |name: &str| name.starts_with(PARTIAL) && Some(name) != kept;

@@ -120,7 +120,7 @@ fn render(block: &Block, pictures: &[&Drawn]) -> Markup {
     }
 }
 
-/// Words with what stands between backticks as code.
+/// A text whose parts between backticks are code.
 fn inline(words: &str) -> Markup {
     let parts: Vec<&str> = words.split('`').collect();
     // A backtick without another one is itself.

@@ -7,7 +7,7 @@ pub fn markdown(blocks: &[Block], figures: &[Figure]) -> String {
     markdown_of_files(blocks, &|index| Ok(figures[index].name.clone()))
 }
 
-/// Markdown in which `file` names the file of a picture, or says why there is none.
+/// Markdown in which `file` gives the file of a picture, or the reason why there is none.
 pub(super) fn markdown_of_files(
     blocks: &[Block],
     file: &dyn Fn(usize) -> Result<String, String>,

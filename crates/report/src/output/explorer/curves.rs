@@ -7,7 +7,7 @@ use serde_json::{Map, Value, json};
 use super::labels::{label, model_label};
 use crate::results::{Results, from_rest};
 
-/// The numbers of a model at one step, by name: those that stand there, and the forces on edges.
+/// The numbers of a model at one step, by name, and the forces on its edges.
 type Numbers = BTreeMap<String, f64>;
 
 /// Numbers of the models along the path, forces first: for each model its steps with their numbers, and the rest that the path

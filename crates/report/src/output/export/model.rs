@@ -33,7 +33,7 @@ pub struct Export<'a> {
 }
 
 impl Export<'_> {
-    /// The bulk modulus in MPa that stands for incompressibility; infinite where the code has incompressible sheets.
+    /// The bulk modulus in MPa that approximates incompressibility; infinite where the code has incompressible sheets.
     fn bulk_modulus(&self, code: Code, card: &Card) -> f64 {
         match code {
             Code::Abaqus => f64::INFINITY,
@@ -75,7 +75,7 @@ impl Export<'_> {
     }
 }
 
-/// The problem in the words that all codes share; nodes and cells are numbered as in the mesh.
+/// The problem in the terms that all codes share; nodes and cells are numbered as in the mesh.
 pub struct Model<'a> {
     pub given: &'a Export<'a>,
     pub code: Code,

@@ -126,7 +126,7 @@ impl Scene<'_> {
         Ok(())
     }
 
-    /// What stands at the head of the file.
+    /// The remarks at the head of the file.
     fn head(&self) -> Vec<String> {
         let mut lines = vec![
             format!("{}; written by gelbench {}", self.title, env!("CARGO_PKG_VERSION")),

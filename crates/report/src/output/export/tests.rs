@@ -121,7 +121,7 @@ fn supports_loads_and_steps_are_those_of_the_study() {
     );
 }
 
-/// A displacement that is linear in the place goes out node by node.
+/// A displacement that is linear in the position is exported node by node.
 #[test]
 fn linear_displacements_go_out_with_the_value_of_every_node() {
     let card = Card::load("neo-hooke", Path::new(".")).unwrap();

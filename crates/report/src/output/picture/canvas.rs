@@ -8,7 +8,7 @@ use super::paint::Painter;
 use super::vectors::Vectors;
 use crate::results::PictureFormat;
 
-/// Paints what is too much to be drawn on an area of `size` points, draws marks above it, and returns a file of the format.
+/// Paints shaded areas into a picture of `size` points, draws marks above them, and returns a file of the format.
 pub(super) fn render(
     size: Size,
     look: Look,

@@ -164,7 +164,7 @@ fn shared_ranges(charts: &[(LineChart, u32)]) -> Vec<[f64; 2]> {
     ranges.collect()
 }
 
-/// Places the names that stand below the last chart of those with a common axis; the upper end of what is below them.
+/// Places the names below the last of the charts with a common axis; the upper end of the room below them.
 fn place_below(frames: &mut [Frame], top: f64) -> f64 {
     let above = frames.iter().rev().skip(1);
     let alike = above.take_while(|frame| frame.is_above_its_like).count();
@@ -219,7 +219,7 @@ impl<'a> Frame<'a> {
         }
     }
 
-    /// Places the names of lines; the upper end of what is below the chart.
+    /// Places the names of lines; the upper end of the room below the chart.
     fn finish(&mut self, look: Look, is_repeated: bool, left: f64, right: f64) -> f64 {
         let below = if self.is_above_its_like {
             GAP
@@ -246,7 +246,7 @@ impl<'a> Frame<'a> {
             })
         };
         let legend = Legend::of(self.chart, look, self.area, &is_free, [left, right, bottom]);
-        // Names of charts with a common axis stand below all of them.
+        // Names of charts with a common axis are placed below all of them.
         let below = if self.is_above_its_like {
             0.0
         } else {

@@ -26,7 +26,7 @@ const MOST_CONTOURED: usize = 400_000;
 pub(super) struct Plan {
     layout: Layout,
     bar: Bar,
-    /// Where the remark on the outlines at rest stands.
+    /// The position of the remark on the outlines at rest.
     rest: Option<([f64; 2], Align)>,
 }
 

@@ -22,7 +22,7 @@ const AWAY: f64 = 6.0;
 const TICK: f64 = 5.0;
 const BELOW: f64 = 15.0;
 
-/// Where the panels lie, in points.
+/// The positions of the panels, in points.
 pub(super) struct Layout {
     pub look: Look,
     /// The upper end of the first panel.

@@ -5,7 +5,7 @@ use super::look::Look;
 use super::marks::{Align, Mark, Pen, Rectangle};
 use crate::results::{Line, LineChart, Stroke};
 
-/// What stands to the left of a name.
+/// The sample to the left of a name.
 enum Sample<'a> {
     Line(&'a Line),
     /// The dashes between computed points.
@@ -37,13 +37,13 @@ const APART: f64 = 18.0;
 /// Above names below an area.
 const ABOVE: f64 = 4.0;
 
-/// All names of a chart where they are to stand.
+/// All names of a chart, with their positions.
 pub(super) struct Legend<'a> {
     look: Look,
     entries: Vec<(Entry<'a>, [f64; 2])>,
     /// What they cover inside of the area.
     pub inside: Option<Rectangle>,
-    /// The height of what stands below the area.
+    /// The height of the names below the area.
     pub below: f64,
     /// The upper end of that.
     top: f64,
@@ -95,7 +95,7 @@ impl<'a> Legend<'a> {
         }
     }
 
-    /// Moves what stands below the area to another upper end.
+    /// Moves the names below the area to another upper end.
     pub fn move_to(&mut self, top: f64) {
         if self.inside.is_none() {
             for (_, at) in &mut self.entries {

@@ -169,7 +169,7 @@ impl Look {
         self.mixed(colour, 2)
     }
 
-    /// One part in so many of a line's colour, the others of the paper's.
+    /// One of so many parts in a line's colour, the others in the paper's.
     fn mixed(self, colour: Colour, parts: i32) -> Colour {
         let (line, paper) = (self.line(colour), self.paper());
         [0, 1, 2].map(|part| {

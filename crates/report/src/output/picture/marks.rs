@@ -13,7 +13,7 @@ pub(super) type Size = (u32, u32);
 /// Red, green and blue.
 pub(super) type Colour = [u8; 3];
 
-/// A line's colour, its width in points and how much of it covers what is below, up to 255.
+/// A line's colour, its width in points and its opacity, up to 255.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Pen {
     pub colour: Colour,
@@ -40,7 +40,7 @@ impl Pen {
         Self { dashes, ..self }
     }
 
-    /// This pen, covering so much of what is below.
+    /// This pen with another opacity.
     pub fn covering(self, cover: u8) -> Self {
         Self { cover, ..self }
     }

@@ -128,7 +128,7 @@ impl Vectors {
     }
 }
 
-/// How much of what is below is covered, up to 255: each has a state of its own.
+/// The opacities in use, up to 255: each needs a graphics state.
 #[derive(Default)]
 struct Covers(Vec<u8>);
 

@@ -20,7 +20,7 @@ impl Solids {
         &self.positions[&(node as usize)]
     }
 
-    /// Whether one node stands in the middle between two others.
+    /// Whether one node is in the middle between two others.
     fn assert_middle(&self, node: f64, ends: [f64; 2]) {
         let [a, b] = ends.map(|end| self.position(end));
         for (axis, coordinate) in self.position(node).iter().enumerate() {
