@@ -60,7 +60,7 @@ impl Pen {
     /// The style in which plotters draws with it; its dashes are those of the backend.
     pub(super) fn style(self) -> ShapeStyle {
         ShapeStyle {
-            color: opaque(self.colour).mix(f64::from(self.cover) / 255.0),
+            color: opaque(self.colour).mix(f64::from(self.opacity) / 255.0),
             filled: false,
             stroke_width: units(f64::from(self.width)).unsigned_abs(),
         }
@@ -81,7 +81,7 @@ impl Backend<'_> {
         Pen {
             colour: [r, g, b],
             width: (f64::from(style.stroke_width()) / FINE) as f32,
-            cover: (255.0 * alpha).round() as u8,
+            opacity: (255.0 * alpha).round() as u8,
             dashes: self.dashes,
         }
     }

@@ -13,8 +13,8 @@ const OUTLINE: f32 = 0.8;
 const AT_REST: f32 = 0.7;
 const CONTOUR: f32 = 0.5;
 
-/// How much lines of equal values cover, up to 255.
-const CONTOUR_COVER: u8 = 110;
+/// The opacity of lines of equal values, up to 255.
+const CONTOUR_OPACITY: u8 = 110;
 
 /// The remark on the outlines at rest.
 const REST: &str = "thin lines: at rest";
@@ -125,7 +125,7 @@ impl FieldFigure {
                 range.share(self.scale.position(value).unwrap_or(range.low))
             }
         };
-        let contour = Pen::new([0; 3], CONTOUR).covering(CONTOUR_COVER);
+        let contour = Pen::new([0; 3], CONTOUR).with_opacity(CONTOUR_OPACITY);
         for (index, panel) in self.panels.iter().enumerate() {
             let rest = layout.placed(index, &panel.surface.rest);
             let pen = Pen::new(look.rest(), AT_REST);

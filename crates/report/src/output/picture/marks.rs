@@ -18,7 +18,7 @@ pub(super) type Colour = [u8; 3];
 pub(super) struct Pen {
     pub colour: Colour,
     pub width: f32,
-    pub cover: u8,
+    pub opacity: u8,
     /// The lengths of its dashes and of the gaps between them in points.
     pub dashes: Option<[f32; 2]>,
 }
@@ -29,7 +29,7 @@ impl Pen {
         Self {
             colour,
             width,
-            cover: 255,
+            opacity: 255,
             dashes: None,
         }
     }
@@ -41,8 +41,8 @@ impl Pen {
     }
 
     /// This pen with another opacity.
-    pub fn covering(self, cover: u8) -> Self {
-        Self { cover, ..self }
+    pub fn with_opacity(self, opacity: u8) -> Self {
+        Self { opacity, ..self }
     }
 }
 

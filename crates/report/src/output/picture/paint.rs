@@ -96,7 +96,7 @@ impl Painter {
                 let path = dashed.as_ref().unwrap_or(path);
                 // As one area: they do not darken each other where they cross.
                 if let Some(outlines) = path.stroke(&stroke(*pen), self.pixels_per_point) {
-                    self.fill(&outlines, pen.colour, pen.cover);
+                    self.fill(&outlines, pen.colour, pen.opacity);
                 }
             }
             Mark::Area(path, colour) => self.fill(path, *colour, 255),
@@ -108,9 +108,9 @@ impl Painter {
         }
     }
 
-    fn fill(&mut self, path: &Path, [red, green, blue]: Colour, cover: u8) {
+    fn fill(&mut self, path: &Path, [red, green, blue]: Colour, opacity: u8) {
         let mut paint = Paint::default();
-        paint.set_color_rgba8(red, green, blue, cover);
+        paint.set_color_rgba8(red, green, blue, opacity);
         let scale = Transform::from_scale(self.pixels_per_point, self.pixels_per_point);
         self.image
             .fill_path(path, &paint, FillRule::Winding, scale, None);

@@ -32,16 +32,16 @@ impl Vectors {
         let mut id = || ids.next().expect("numbers do not end");
         let [catalog, pages, page, drawing, image] = [(); 5].map(|()| id());
         let (width, height) = (self.size.0 as f32, self.size.1 as f32);
-        let mut covers = Covers::default();
-        let content = self.content(&mut covers);
+        let mut opacities = Opacities::default();
+        let content = self.content(&mut opacities);
         let mut pdf = Pdf::new();
         pdf.catalog(catalog).pages(pages);
         pdf.pages(pages).kids([page]).count(1);
-        let states: Vec<(String, Ref, f32)> = covers
+        let states: Vec<(String, Ref, f32)> = opacities
             .0
             .iter()
             .enumerate()
-            .map(|(index, cover)| (Covers::name(index), id(), f32::from(*cover) / 255.0))
+            .map(|(index, opacity)| (Opacities::name(index), id(), f32::from(*opacity) / 255.0))
             .collect();
         let fonts = FONTS.map(|(name, is_bold)| (name, self.used(is_bold), [(); 5].map(|()| id())));
         let mut sheet = pdf.page(page);
@@ -65,10 +65,10 @@ impl Vectors {
         named.finish();
         resources.finish();
         sheet.finish();
-        for (_, state, cover) in &states {
+        for (_, state, opacity) in &states {
             pdf.ext_graphics(*state)
-                .stroking_alpha(*cover)
-                .non_stroking_alpha(*cover);
+                .stroking_alpha(*opacity)
+                .non_stroking_alpha(*opacity);
         }
         for (name, used, parts) in used {
             write_font(&mut pdf, *name, used, *parts)?;
@@ -96,7 +96,7 @@ impl Vectors {
         letters.collect()
     }
 
-    fn content(&self, covers: &mut Covers) -> Vec<u8> {
+    fn content(&self, opacities: &mut Opacities) -> Vec<u8> {
         let (width, height) = (self.size.0 as f32, self.size.1 as f32);
         let mut content = Content::new();
         // From here on in points of the design, downwards.
@@ -113,14 +113,14 @@ impl Vectors {
         for mark in &self.marks {
             content.save_state();
             match mark {
-                Mark::Lines(path, pen) => draw_lines(&mut content, path, *pen, covers),
+                Mark::Lines(path, pen) => draw_lines(&mut content, path, *pen, opacities),
                 Mark::Area(path, colour) => {
-                    covers.set(&mut content, 255);
+                    opacities.set(&mut content, 255);
                     fill_with(&mut content, *colour);
                     follow(&mut content, path);
                     content.fill_nonzero();
                 }
-                Mark::Words(words) => write_words(&mut content, words, covers),
+                Mark::Words(words) => write_words(&mut content, words, opacities),
             }
             content.restore_state();
         }
@@ -130,17 +130,17 @@ impl Vectors {
 
 /// The opacities in use, up to 255: each needs a graphics state.
 #[derive(Default)]
-struct Covers(Vec<u8>);
+struct Opacities(Vec<u8>);
 
-impl Covers {
+impl Opacities {
     fn name(index: usize) -> String {
         format!("cover{index}")
     }
 
-    fn set(&mut self, content: &mut Content, cover: u8) {
-        let known = self.0.iter().position(|known| *known == cover);
+    fn set(&mut self, content: &mut Content, opacity: u8) {
+        let known = self.0.iter().position(|known| *known == opacity);
         let index = known.unwrap_or_else(|| {
-            self.0.push(cover);
+            self.0.push(opacity);
             self.0.len() - 1
         });
         content.set_parameters(Name(Self::name(index).as_bytes()));
@@ -162,8 +162,8 @@ fn fill_with(content: &mut Content, colour: Colour) {
     content.set_fill_rgb(red, green, blue);
 }
 
-fn draw_lines(content: &mut Content, path: &Path, pen: Pen, covers: &mut Covers) {
-    covers.set(content, pen.cover);
+fn draw_lines(content: &mut Content, path: &Path, pen: Pen, opacities: &mut Opacities) {
+    opacities.set(content, pen.opacity);
     let [red, green, blue] = shares(pen.colour);
     content.set_stroke_rgb(red, green, blue);
     content.set_line_width(pen.width);
@@ -207,7 +207,7 @@ fn follow(content: &mut Content, path: &Path) {
     }
 }
 
-fn write_words(content: &mut Content, words: &Words, covers: &mut Covers) {
+fn write_words(content: &mut Content, words: &Words, opacities: &mut Opacities) {
     let [(regular, _), (bold, _)] = FONTS;
     let font = &Face::of(words.letters).font;
     let bytes = words
@@ -216,7 +216,7 @@ fn write_words(content: &mut Content, words: &Words, covers: &mut Covers) {
         .flat_map(|letter| font.glyph_id(letter).0.to_be_bytes());
     let glyphs: Vec<u8> = bytes.collect();
     let [x, y] = words.start().map(|end| end as f32);
-    covers.set(content, 255);
+    opacities.set(content, 255);
     fill_with(content, words.colour);
     content.begin_text();
     content.set_font(

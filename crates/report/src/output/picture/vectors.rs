@@ -94,7 +94,7 @@ fn element(mark: &Mark) -> DrawResult<String> {
                 "<path fill=\"none\" stroke=\"{}\" stroke-width=\"{}\" stroke-opacity=\"{:.3}\" {caps} stroke-linejoin=\"round\" d=\"{}\"/>\n",
                 hexadecimal(pen.colour),
                 pen.width,
-                f64::from(pen.cover) / 255.0,
+                f64::from(pen.opacity) / 255.0,
                 data(path)?
             )
         }
