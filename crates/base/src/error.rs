@@ -123,9 +123,9 @@ pub enum SolveFault {
     /// The tangent has a direction of no or negative stiffness.
     #[error("the tangent stiffness is not positive definite: a loss of stability")]
     NotPositiveDefinite,
-    /// A body with a direction of negative stiffness before any load acts.
+    /// A body with a direction of no or negative stiffness before any load acts.
     #[error(
-        "unstable at rest: before any load acts, a mode that is largest at {position} has a negative stiffness"
+        "unstable at rest: before any load acts, a mode that is largest at {position} has no stiffness, or a negative one"
     )]
     UnstableAtRest {
         /// Where the mode is largest.
@@ -253,7 +253,8 @@ impl SolveFault {
                 "look at the card's stable range with `gelbench materials show`, or take smaller steps of load or time"
             }
             Self::UnstableAtRest { .. } => {
-                "take less distorted cells: in skewed cells, springs may need negative constants to reproduce the material's stiffness"
+                "take less distorted cells, or leave the springs out, models = [\"corrected\", \"finite-element\"]: in skewed cells some springs would need \
+                 negative constants to reproduce the material's stiffness and get none, so that a node may be held by a single spring"
             }
             Self::MaterialUnstable { .. } => {
                 "look at the card's stable range with `gelbench materials show`, or take a law that is stable there"

@@ -3,6 +3,7 @@
 use std::fs;
 
 use super::{PULLED, specimen};
+use crate::common::mesh_files::MeshFile;
 use crate::common::{folder_with, gelbench, machine_report, words};
 
 /// A specimen refines itself to the error that the study wants; where the cells do not suffice, that is told.
@@ -132,4 +133,49 @@ fn the_end_of_the_springs_is_told_and_the_other_models_complete() {
         ["mass_spring", "corrected", "finite_element"].map(steps),
         [1, 2, 2]
     );
+}
+
+/// In skewed cells some springs would need negative constants and get none: a node on a free side is held by a single spring, and swings.
+#[test]
+fn springs_that_are_unstable_at_rest_are_to_be_left_out() {
+    let mesh = MeshFile {
+        nodes: vec![
+            [48.0, 0.0],
+            [54.0, 0.0],
+            [60.0, 0.0],
+            [41.42, 2.62],
+            [45.87, 2.83],
+            [50.28, 3.07],
+        ],
+        cells: vec![vec![0, 1, 4, 3], vec![1, 2, 5, 4]],
+        lines: vec![
+            ("start".to_owned(), vec![0, 3]),
+            ("end".to_owned(), vec![2, 5]),
+        ],
+    };
+    let moved = PULLED
+        .replace("left", "start")
+        .replace("right", "end")
+        .replace(
+            "x = \"6 mm\"\ny = \"0 mm\"",
+            "x = \"0.6 mm\"\ny = \"-0.4 mm\"",
+        );
+    let shape = "shape = \"mesh\"\nfile = \"skewed.msh\"\nfile_unit = \"mm\"";
+    let study = specimen(shape, &moved).replace("pva-10-yeoh", "neo-hooke");
+    let folder = folder_with(&study);
+    fs::write(folder.path().join("skewed.msh"), mesh.msh()).unwrap();
+    let run = ["run", "small.toml", "--output", "out"];
+    let done = gelbench(folder.path(), &run).code(3);
+    let printed = words(&done.get_output().stdout);
+    assert!(
+        printed.contains("unstable at rest") && printed.contains("(54.0, 0.0) mm"),
+        "{printed}"
+    );
+    let remedy = "models = [\"corrected\", \"finite-element\"]";
+    assert!(printed.contains(remedy), "{printed}");
+    let study = format!("{remedy}\n{study}");
+    fs::write(folder.path().join("small.toml"), study).unwrap();
+    let done = gelbench(folder.path(), &run);
+    let printed = words(&done.get_output().stdout);
+    assert!(!printed.contains("reached"), "{printed}");
 }

@@ -21,6 +21,9 @@ const NEAR: f64 = 0.1;
 /// distance to a limit point, and a path comes within a thousandth of that point.
 const SOFT: f64 = 0.1;
 
+/// Share of the largest stiffness of an unknown below which a stiffness is rounding: slender strips of a thousand cells have modes of 1e-12.
+const ROUNDED: f64 = 1e-14;
+
 /// Cosine of the angle between mode and load above which the load drives the mode. For a mode that symmetry decouples
 /// from the load it is rounding, about 1e-10; for the stretching of a bar some 0.1.
 const DRIVEN: f64 = 1e-3;
@@ -62,12 +65,7 @@ pub fn diagnose(
         let most = (0..mode.len()).max_by(|a, b| mode[*a].abs().total_cmp(&mode[*b].abs()));
         most.map_or_else(String::new, |unknown| loading.describe_unknown(unknown))
     };
-    let at_rest = previous
-        .is_none()
-        .then(|| newton.tangent.softest_mode(&*potential, &rest));
-    if let Some((least, mode)) = at_rest.flatten()
-        && least < 0.0
-    {
+    if let Some(mode) = unstable_at_rest(newton, loading, stage.history) {
         let position = place_of(&mode);
         return SolveFault::UnstableAtRest { position };
     }
@@ -80,6 +78,20 @@ pub fn diagnose(
     }
     let factor = previous.map_or(0.0, |state| state.factor);
     SolveFault::LoadMaximum { factor, position }
+}
+
+/// A mode that has no stiffness before any load acts, or a negative one, such as of a node that is held by a single spring: steps with shifted
+/// tangents may lead away from rest all the same.
+fn unstable_at_rest(
+    newton: &mut Newton,
+    loading: &dyn Loading,
+    history: &[f64],
+) -> Option<Vec<f64>> {
+    let potential = loading.potential(0.0, history);
+    let rest = vec![0.0; potential.unknowns()];
+    let (least, mode) = newton.tangent.softest_mode(&*potential, &rest)?;
+    let stiffest = newton.tangent.factorised_stiffest().unwrap_or(0.0);
+    (least <= ROUNDED * stiffest).then_some(mode)
 }
 
 /// A state at or near the last equilibrium in which a direction has lost its stiffness.

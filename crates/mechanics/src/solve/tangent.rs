@@ -204,7 +204,8 @@ impl Tangent {
         potential: &dyn Potential,
         u: &[f64],
     ) -> Option<(f64, Vec<f64>)> {
-        const ITERATIONS: usize = 20;
+        /// A shift with which a tangent that is singular but for rounding can be solved.
+        const SHIFT: f64 = 1e-9;
         let (mut residual, mut stiffness) = (vec![0.0; u.len()], Vec::new());
         let linearised = self
             .assembly
@@ -217,6 +218,23 @@ impl Tangent {
         self.skew = skew;
         self.skew.columns.clear();
         factorised.ok()?;
+        let mut mode = self.inverse_iteration();
+        if mode.is_none() {
+            let shift = SHIFT * self.assembly.stiffest(&stiffness);
+            for position in self.assembly.pattern().diagonal() {
+                stiffness[*position] += shift;
+            }
+            self.analysed().ok()?.factorise(&stiffness).ok()?;
+            mode = self.inverse_iteration();
+        }
+        let mode = mode?;
+        let forces = self.assembly.pattern().multiply(&tangent, &mode);
+        Some((dot(&mode, &forces), spread(self.free(), &mode, u.len())))
+    }
+
+    /// The mode of least stiffness of the factor at hand, of length one; `None` where that is singular to working precision.
+    fn inverse_iteration(&mut self) -> Option<Vec<f64>> {
+        const ITERATIONS: usize = 20;
         // A start without any symmetry has a part of every mode.
         let count = self.free().len();
         let mut mode: Vec<f64> = (0..count).map(|i| (1.0 + i as f64).sqrt().sin()).collect();
@@ -225,8 +243,7 @@ impl Tangent {
             let size = norm(&mode);
             mode.iter_mut().for_each(|entry| *entry /= size);
         }
-        let forces = self.assembly.pattern().multiply(&tangent, &mode);
-        Some((dot(&mode, &forces), spread(self.free(), &mode, u.len())))
+        Some(mode)
     }
 
     /// Factorises the tangent at `u`; returns the residual there, and whether the tangent had to be shifted.
