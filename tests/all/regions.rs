@@ -91,6 +91,7 @@ fn the_models_of_two_strips_in_parallel_carry_the_sum_of_their_forces() {
     );
     let page = fs::read_to_string(folder.path().join("out/report.md")).unwrap();
     for expected in [
+        "# Specimen of neo-Hooke, C10 = 0.05 MPa (verification) and unfilled silicone rubber RTV 141, yeoh\n",
         "## Regions",
         "| 2 | upper | meunier-yeoh |",
         "## Material of lower",

@@ -246,7 +246,7 @@ impl Kind {
         }
     }
 
-    /// The title of the study: for a plate, a specimen or a motion without a title, that of its material; for the others, that of their built-in study.
+    /// The title of the study: for a plate, a specimen or a motion without a title, that of its materials; for the others, that of their built-in study.
     fn title(&self, root: &Section, text: &str, folder: &Path) -> String {
         let Some((_, what)) = UNTITLED.iter().find(|(kind, _)| *kind == self.name) else {
             return root.heading("title");
@@ -257,8 +257,12 @@ impl Kind {
             let document = Document::parse("", text, &faults);
             let defaults = self.defaults(&document, &faults);
             let root = document.root(Some(&defaults), &faults);
-            let card = Card::load(&root.section("material").text("card"), folder);
-            card.map_or_else(|_| (*what).to_owned(), |card| card.title_of(what))
+            let sections = root.section_or_sections("material");
+            let cards = sections.iter().map(|section| section.text("card"));
+            let cards: Vec<Card> = cards
+                .filter_map(|name| Card::load(&name, folder).ok())
+                .collect();
+            Card::title_of(what, &cards)
         })
     }
 

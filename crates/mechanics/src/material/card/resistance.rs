@@ -119,10 +119,20 @@ impl Card {
         format!("{material} in {plane}{softens}")
     }
 
-    /// The title of a study of this material that states none: the kind of study and the card's title.
-    pub fn title_of(&self, what: &str) -> String {
-        let words: Vec<&str> = self.title.split_whitespace().collect();
-        format!("{what} of {}", words.join(" "))
+    /// The title of a study of some materials that states none: the kind of study and the cards' titles, each once.
+    pub fn title_of(what: &str, cards: &[Self]) -> String {
+        let mut titles: Vec<String> = Vec::new();
+        for card in cards {
+            let words: Vec<&str> = card.title.split_whitespace().collect();
+            let title = words.join(" ");
+            if !titles.contains(&title) {
+                titles.push(title);
+            }
+        }
+        if titles.is_empty() {
+            return what.to_owned();
+        }
+        format!("{what} of {}", titles.join(" and "))
     }
 
     /// The same material in plane strain; `None` where its card states no resistance to a change of volume.
