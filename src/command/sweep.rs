@@ -19,7 +19,8 @@ use gelbench_studies::studies::name;
 use gelbench_studies::studies::sections::read_text;
 
 /// What stands below the help.
-pub const HELP: &str = "A key's parts have dots between them, places of lists count from 0, and parameters of the study's card are material.KEY:
+pub const HELP: &str = "A key's parts have dots between them, places of lists count from 0, and parameters of the study's card are material.KEY,
+of a list of cards material.0.KEY:
   --vary \"material.c10=0.04..0.06 MPa:20\"   20 values, evenly
   --vary \"plate.thickness=1 mm,2 mm\"        these values
   --vary \"material.c10=0.05+-0.002 MPa\"     normal, with mean and standard deviation; needs --samples

@@ -11,11 +11,11 @@ use gelbench_mechanics::material::Card;
 use gelbench_studies::studies::specimen::Along;
 use gelbench_studies::studies::{PreparedStudy, Steps, motion, specimen};
 
-/// The name of a run's card, which is a file in memory in the folder of the study's own card.
-const CARD: &str = "gelbench-sweep-card.toml";
+/// What the name of a run's card begins with, which is a file in memory in the folder of the study's own card.
+const CARD: &str = "gelbench-sweep-card";
 
 /// The keys under `material` that belong to the study; all others are parameters of the card.
-const OF_THE_STUDY: [&str; 4] = ["card", "sheet", "density", "viscosity"];
+const OF_THE_STUDY: [&str; 5] = ["card", "on", "sheet", "density", "viscosity"];
 
 /// A file in memory: its path and its content.
 type File = (PathBuf, Vec<u8>);
@@ -50,8 +50,8 @@ impl BaseStudy {
     /// # Errors
     /// [`Error::Input`] with what cannot be set, and every fault of the study.
     pub fn with(&self, keys: &[String], settings: &[Setting]) -> Result<PreparedStudy, Error> {
-        let (study, card) = with_files(self.files.clone(), || self.edited(keys, settings))?;
-        let files = self.files.iter().cloned().chain(card);
+        let (study, cards) = with_files(self.files.clone(), || self.edited(keys, settings))?;
+        let files = self.files.iter().cloned().chain(cards);
         with_files(files, || kinds::read_given(&self.path, study, self.budget))
     }
 
@@ -65,54 +65,68 @@ impl BaseStudy {
         })
     }
 
-    /// The study's text with some keys set, and the card of this run, where it has one of its own.
-    fn edited(
-        &self,
-        keys: &[String],
-        settings: &[Setting],
-    ) -> Result<(String, Option<File>), Error> {
+    /// The study's text with some keys set, and the cards that this run has of its own.
+    fn edited(&self, keys: &[String], settings: &[Setting]) -> Result<(String, Vec<File>), Error> {
         let folder = self.path.parent().unwrap_or(Path::new(""));
         let mut study = EditedDocument::parse(&self.text).map_err(|cause| {
             let message = format!("{} is not TOML: {cause}", self.path.display());
             Error::input(message, "correct the study")
         })?;
-        let mut card = None;
-        for (key, setting) in keys.iter().zip(settings) {
+        // Cards are named before their parameters are set.
+        let mut all: Vec<(&String, &Setting)> = keys.iter().zip(settings).collect();
+        all.sort_by_key(|(key, _)| !(key.starts_with("material.") && key.ends_with(".card")));
+        let mut cards = Vec::new();
+        for (key, setting) in all {
             let path: Vec<&str> = key.split('.').collect();
             let value = new_value(setting);
-            let of_card = match path[..] {
-                ["material", ref parameter @ ..] if parameter != ["card"] => {
-                    if card.is_none() {
-                        card = Some(VariedCard::of(&study, folder)?);
+            let of_card = match of_material(&study, &path) {
+                Some((section, parameter)) => {
+                    let card = VariedCard::of(&mut cards, &study, section, folder)?;
+                    let of_card = card.set(parameter, &value);
+                    if let [name] = parameter
+                        && !of_card
+                        && !OF_THE_STUDY.contains(name)
+                    {
+                        return Err(card.has_none(key, name));
                     }
-                    card.as_mut()
-                        .is_some_and(|card| card.set(parameter, &value))
+                    of_card
                 }
-                _ => false,
+                None => false,
             };
-            if let (["material", parameter], Some(card)) = (&path[..], &card)
-                && !of_card
-                && !OF_THE_STUDY.contains(parameter)
-            {
-                return Err(card.has_none(key, parameter));
-            }
             if !of_card {
                 study
                     .set(&path, &value)
                     .map_err(|reason| no_place(key, reason))?;
             }
         }
-        let mut file = None;
-        if let Some(card) = card.filter(|card| card.is_varied) {
+        let mut files = Vec::new();
+        for card in cards.iter().filter(|card| card.is_varied) {
             let name = NewValue::Text(card.position.to_string_lossy().into_owned());
-            let named = study.set(&["material", "card"], &name);
-            named.map_err(|reason| no_place("material.card", reason))?;
+            let mut place: Vec<&str> = card.section.iter().map(String::as_str).collect();
+            place.push("card");
+            let named = study.set(&place, &name);
+            named.map_err(|reason| no_place(&place.join("."), reason))?;
             let path = folder.join(&card.position);
             let plain = path.strip_prefix(".").unwrap_or(&path).to_owned();
-            file = Some((plain, card.document.text().into_bytes()));
+            files.push((plain, card.document.text().into_bytes()));
         }
-        Ok((study.text(), file))
+        Ok((study.text(), files))
     }
+}
+
+/// The section of a material and the key in it, as in `material.c10`, and in `material.1.c10` of a list of materials; `None` for its card, and for
+/// all other keys.
+fn of_material<'a>(
+    study: &EditedDocument,
+    path: &'a [&'a str],
+) -> Option<(&'a [&'a str], &'a [&'a str])> {
+    let is_list = study.holds(&["material", "0"]);
+    let length = if is_list { 2 } else { 1 };
+    let is_in_it = path.first() == Some(&"material")
+        && path.len() > length
+        && (!is_list || study.holds(&path[..length]));
+    let (section, key) = is_in_it.then(|| path.split_at(length))?;
+    (key != ["card"]).then_some((section, key))
 }
 
 fn no_place(key: &str, reason: String) -> Error {
@@ -123,6 +137,8 @@ fn no_place(key: &str, reason: String) -> Error {
 
 /// A card whose parameters are set.
 struct VariedCard {
+    /// The section of the study that names it.
+    section: Vec<String>,
     /// Relative to the study.
     position: PathBuf,
     card: Card,
@@ -131,8 +147,24 @@ struct VariedCard {
 }
 
 impl VariedCard {
-    fn of(study: &EditedDocument, folder: &Path) -> Result<Self, Error> {
-        let name = study.text_of(["material", "card"]).ok_or_else(|| {
+    /// The card of a section among those that are known, which it joins.
+    fn of<'a>(
+        known: &'a mut Vec<Self>,
+        study: &EditedDocument,
+        section: &[&str],
+        folder: &Path,
+    ) -> Result<&'a mut Self, Error> {
+        let position = known.iter().position(|card| card.section == section);
+        if position.is_none() {
+            known.push(Self::load(study, section, folder)?);
+        }
+        let position = position.unwrap_or(known.len() - 1);
+        Ok(&mut known[position])
+    }
+
+    fn load(study: &EditedDocument, section: &[&str], folder: &Path) -> Result<Self, Error> {
+        let place = [section, &["card"]].concat();
+        let name = study.text_of(&place).ok_or_else(|| {
             Error::input(
                 "a parameter of the card is varied, but the study names no card",
                 "give it [material] card = …, or vary keys of the study",
@@ -145,8 +177,11 @@ impl VariedCard {
                 "correct the card",
             )
         })?;
+        let number = section.get(1);
+        let number = number.map_or_else(String::new, |place| format!("-{place}"));
         Ok(Self {
-            position: Path::new(name).with_file_name(CARD),
+            section: section.iter().map(|part| (*part).to_owned()).collect(),
+            position: Path::new(name).with_file_name(format!("{CARD}{number}.toml")),
             card,
             document,
             is_varied: false,
@@ -203,5 +238,66 @@ fn new_value(setting: &Setting) -> NewValue {
             Ok(flag) => NewValue::Flag(flag),
             Err(_) => NewValue::Text(text.clone()),
         },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const EXAMPLE: &str = include_str!("../../examples/inclusion.toml");
+
+    /// The study of two regions with keys set to texts.
+    fn set(all: &[[&str; 2]]) -> Result<(String, Vec<File>), Error> {
+        let study = BaseStudy {
+            path: Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/inclusion.toml"),
+            text: EXAMPLE.to_owned(),
+            files: Vec::new(),
+            budget: Budget::USUAL,
+        };
+        let keys: Vec<String> = all.iter().map(|[key, _]| (*key).to_owned()).collect();
+        let settings: Vec<Setting> = all.iter().map(|[_, text]| Setting::of(text)).collect();
+        study.with(&keys, &settings)?;
+        study.edited(&keys, &settings)
+    }
+
+    #[test]
+    fn keys_of_a_region_and_parameters_of_its_card_are_set() {
+        let (study, files) = set(&[["material.0.card", "mooney-rivlin"]]).unwrap();
+        assert!(
+            study.contains("card = \"mooney-rivlin\"") && files.is_empty(),
+            "{study}"
+        );
+        let (study, files) = set(&[["material.1.c10", "0.25 MPa"]]).unwrap();
+        let own = "card = \"gelbench-sweep-card-1.toml\"";
+        assert!(
+            study.contains(own) && study.contains("card = \"neo-hooke\""),
+            "{study}"
+        );
+        let [(path, text)] = &files[..] else {
+            panic!("{files:?}");
+        };
+        assert!(path.ends_with("examples/gelbench-sweep-card-1.toml"));
+        let text = String::from_utf8_lossy(text);
+        assert!(
+            text.contains("c10 = \"0.25 MPa\"") && text.contains("c30 = "),
+            "{text}"
+        );
+        let other = ["material.1.card", "neo-hooke"];
+        let (_, files) = set(&[["material.1.c10", "0.25 MPa"], other]).unwrap();
+        let text = String::from_utf8_lossy(&files[0].1);
+        assert!(text.contains("law = \"neo-hooke\""), "{text}");
+    }
+
+    #[test]
+    fn what_no_region_or_its_card_has_is_refused() {
+        for (key, reason) in [
+            ("material.1.mu", "has no parameter `mu`"),
+            ("material.c10", "a list of 2 entries, and `c10` is not one"),
+            ("material.2.c10", "a list of 2 entries, and `2` is not one"),
+        ] {
+            let fault = set(&[[key, "0.25 MPa"]]).unwrap_err().to_string();
+            assert!(fault.contains(reason), "{key}: {fault}");
+        }
     }
 }

@@ -44,9 +44,9 @@ impl EditedDocument {
         Ok(Self { table })
     }
 
-    /// The text under a key of a section.
-    pub fn text_of(&self, [section, key]: [&str; 2]) -> Option<&str> {
-        self.table.get(section)?.get(key)?.as_str()
+    /// The text at a path of names and of places in lists from 0 on.
+    pub fn text_of(&self, path: &[&str]) -> Option<&str> {
+        self.at(path)?.as_str()
     }
 
     /// Sets the value at a path of names and of places in lists from 0 on; missing sections are created, missing places of lists are not.
