@@ -1,6 +1,7 @@
 //! Meshes in Abaqus' and CalculiX' input files: nodes, plane elements and sets of one part.
 //!
-//! `*NSET` are groups of nodes, to which the edges between them belong, `*ELSET` groups of cells. Other keywords are passed over.
+//! `*NSET` are groups of nodes, to which the edges between them belong, `*ELSET` groups of cells. The part is where its `*INSTANCE` puts it. Other
+//! keywords are passed over, but for those that move nodes.
 //!
 //! # References
 //! Abaqus Keywords Reference Guide: `*NODE`, `*ELEMENT`, `*NSET`, `*ELSET`; CalculiX CrunchiX User's Manual, the same.
@@ -9,6 +10,10 @@ use std::collections::HashMap;
 
 use super::raw::{Raw, Unreadable};
 use crate::mesh::cell_shape::CellShape;
+
+mod placement;
+
+use placement::Assembly;
 
 /// What the lines below a keyword hold.
 enum Block {
@@ -25,6 +30,15 @@ enum Block {
         name: String,
         is_range: bool,
     },
+    Part(String),
+    Instance {
+        name: String,
+        part: String,
+    },
+    /// Behind a part or an instance.
+    End,
+    /// A system of coordinates for the nodes below it.
+    System,
     Other,
 }
 
@@ -41,7 +55,10 @@ pub fn read(text: &str) -> Result<Raw, Unreadable> {
         .filter(|(_, line)| !line.trim().is_empty() && !line.starts_with("**"));
     while let Some((number, line)) = lines.next() {
         let read = if line.trim_start().starts_with('*') {
-            keyword(line).map(|next_block| block = next_block)
+            keyword(line).map(|next_block| {
+                input.begin(&next_block, number + 1);
+                block = next_block;
+            })
         } else {
             let mut data = line.trim().to_owned();
             // An element continues below a comma at the end of a line.
@@ -75,9 +92,16 @@ fn keyword(line: &str) -> Result<Block, String> {
             .ok_or(format!("*{name} without {key}=NAME"))
     };
     Ok(match &*name {
-        "NODE" => Block::Nodes {
-            set: option("NSET"),
-        },
+        "NODE" => {
+            if let Some(system) = option("SYSTEM").filter(|name| !name.eq_ignore_ascii_case("R")) {
+                return Err(format!(
+                    "*NODE with SYSTEM={system}, a cylindrical or spherical system: write the nodes with their x and y"
+                ));
+            }
+            Block::Nodes {
+                set: option("NSET"),
+            }
+        }
         "ELEMENT" => Block::Elements {
             shape: shape(&named("TYPE")?)?,
             set: option("ELSET"),
@@ -88,6 +112,16 @@ fn keyword(line: &str) -> Result<Block, String> {
             name: named(&name)?,
             is_range,
         },
+        "PART" => Block::Part(option("NAME").unwrap_or_default()),
+        "INSTANCE" => Block::Instance {
+            name: option("NAME").unwrap_or_default(),
+            part: option("PART").unwrap_or_default(),
+        },
+        "END PART" | "END INSTANCE" => Block::End,
+        "SYSTEM" => Block::System,
+        "NMAP" => {
+            return Err("*NMAP moves nodes: write them where they are".to_owned());
+        }
         "INCLUDE" => {
             return Err("*INCLUDE names another file: put its lines in this one".to_owned());
         }
@@ -124,6 +158,7 @@ struct Input {
     /// Numbers of elements, and names of other sets, by the name of their set.
     element_sets: Vec<(String, Vec<Member>)>,
     node_sets: Vec<(String, Vec<Member>)>,
+    assembly: Assembly,
 }
 
 /// A member of a set.
@@ -133,6 +168,16 @@ enum Member {
 }
 
 impl Input {
+    /// Begins the block of a keyword on a line.
+    fn begin(&mut self, block: &Block, line: usize) {
+        match block {
+            Block::Part(name) => self.assembly.begin_part(name),
+            Block::Instance { name, part } => self.assembly.begin_instance(name, part, line),
+            Block::End => self.assembly.end(),
+            _ => {}
+        }
+    }
+
     fn data(&mut self, block: &Block, line: &str) -> Result<(), String> {
         let fields: Vec<&str> = line
             .split(',')
@@ -162,7 +207,12 @@ impl Input {
                 extend(sets, name, members(&fields, *is_range)?);
                 Ok(())
             }
-            Block::Other => Ok(()),
+            Block::Instance { .. } => self.assembly.place(&numbers(line)?),
+            Block::System => Err(
+                "*SYSTEM states a system of coordinates of its own for nodes: write them in that of the assembly"
+                    .to_owned(),
+            ),
+            Block::Part(_) | Block::End | Block::Other => Ok(()),
         }
     }
 
@@ -181,6 +231,7 @@ impl Input {
                 "the node {number} once more: keep the mesh of one part"
             ));
         }
+        self.assembly.add_node(number);
         if let Some(set) = set {
             extend(&mut self.node_sets, set, vec![Member::Number(number)]);
         }
@@ -210,6 +261,7 @@ impl Input {
             ));
         }
         self.raw.cells.push((shape, nodes.to_vec()));
+        self.assembly.add_element();
         if let Some(set) = set {
             extend(&mut self.element_sets, set, vec![Member::Number(*number)]);
         }
@@ -218,6 +270,7 @@ impl Input {
 
     /// The mesh with its sets; sets of nodes that no cell has, such as reference points, are left out.
     fn finish(mut self) -> Result<Raw, Unreadable> {
+        self.assembly.put(&mut self.raw.positions)?;
         for (name, numbers) in resolved(&self.element_sets)? {
             let cells = numbers
                 .iter()
@@ -299,6 +352,16 @@ fn integer(field: &str) -> Result<u64, String> {
         .map_err(|_| format!("\"{field}\" where a whole number should be"))
 }
 
+/// The numbers on a line; one that is left out is zero.
+fn numbers(line: &str) -> Result<Vec<f64>, String> {
+    let line = line.strip_suffix(',').unwrap_or(line);
+    let number = |field: &str| match field.trim() {
+        "" => Ok(0.0),
+        field => coordinate(field),
+    };
+    line.split(',').map(number).collect()
+}
+
 /// A number; Fortran's exponents have a D.
 fn coordinate(field: &str) -> Result<f64, String> {
     let number = field.replace(['d', 'D'], "e").parse().ok();
@@ -306,54 +369,4 @@ fn coordinate(field: &str) -> Result<f64, String> {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    const TWO: &str = "*HEADING\nA strip\n** made by hand\n*Part, name=strip\n*Node, nset=ALL\n1, 0., 0.\n 2, 1D1, 0.\n3, 20., 0., 0.\n\
-        4, 0., 10.\n5, 10., 10.\n6, 20., 10.\n*Element, type=CPS4R, elset=left half\n1, 1, 2, 5, 4\n*ELEMENT, TYPE=CPE3H\n2, 2, 3,\n6\n\
-        3, 2, 6, 5\n*Nset, nset=bottom, generate\n1, 3, 1\n*Nset, nset=lower\nbottom\n*Elset, elset=\"right\"\n2, 3\n*End Part\n\
-        *Boundary\nlower, 1, 2\n";
-
-    #[test]
-    fn nodes_elements_and_sets_are_read() {
-        let raw = read(TWO).unwrap();
-        assert_eq!(raw.positions.len(), 6);
-        assert_eq!(raw.positions[&2], [10.0, 0.0, 0.0]);
-        assert_eq!(raw.cells[0], (CellShape::Quad4, vec![1, 2, 5, 4]));
-        assert_eq!(raw.cells[1], (CellShape::Triangle3, vec![2, 3, 6]));
-        assert_eq!(raw.areas["left half"], [0]);
-        assert_eq!(raw.areas["right"], [1, 2]);
-        assert_eq!(raw.sets["bottom"], [1, 2, 3]);
-        assert_eq!(raw.sets["lower"], [1, 2, 3]);
-        assert_eq!(raw.sets["ALL"].len(), 6);
-        let mesh = raw.mesh(1.0).unwrap();
-        assert_eq!(
-            (mesh.cell_count(), mesh.groups()["bottom"].edges.len()),
-            (3, 2)
-        );
-    }
-
-    #[test]
-    fn what_is_no_sheet_is_refused_with_its_line() {
-        for (text, reason) in [
-            ("*ELEMENT, TYPE=C3D8\n", "line 1: elements of the type C3D8"),
-            ("*ELEMENT\n", "line 1: *ELEMENT without TYPE=NAME"),
-            ("*NODE\n1, 0\n", "line 2: 2 fields"),
-            ("*NODE\n1, 0, a\n", "line 2: \"a\" where a number should be"),
-            ("*NODE\n1, 0, 0\n1, 0, 0\n", "line 3: the node 1 once more"),
-            (
-                "*ELEMENT, TYPE=CPS3\n1, 1, 2\n",
-                "line 2: the element 1 has 2 nodes instead of 3",
-            ),
-            (
-                "*NSET, NSET=a, GENERATE\n1, 99999999999, 1\n",
-                "line 2: a range",
-            ),
-            ("*NSET, NSET=a\nb\n", "neither a number nor a set"),
-            ("*INCLUDE, INPUT=mesh.inp\n", "*INCLUDE names another file"),
-        ] {
-            let error = read(text).err().unwrap().to_string();
-            assert!(error.contains(reason), "{error}");
-        }
-    }
-}
+mod tests;
