@@ -325,6 +325,8 @@ mod tests {
             ("Position (z), mm", "position", Some("mm")),
             ("Strain (Strain 1) [%]", "strain", Some("%")),
             ("strain_%", "strain", Some("%")),
+            ("Strain (\u{3bc}ε)", "strain", Some("µε")),
+            ("Strain [microstrain]", "strain", Some("µε")),
             ("Length/m", "length", Some("m")),
             ("strain_min", "strain_min", None),
             ("pressure_in", "pressure_in", None),

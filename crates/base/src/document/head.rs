@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use super::{Column, Table};
 use crate::error::{Diagnostic, Error, suggestion};
-use crate::units::{self, Dimension};
+use crate::units::{self, Dimension, QuantityFault};
 
 /// Statements that supplement the head of a table: keys and values.
 pub type Statements = BTreeMap<String, String>;
@@ -232,11 +232,19 @@ impl<'a> Head<'a> {
                     rare.meaning,
                     usual = rare.usual
                 ),
-                None => fault.remedy(&unit, dimension),
+                None => fault.remedy(&unit, dimension) + unmarked(dimension, &fault),
             };
             let position = self.table.columns_place.clone();
             self.fault(position, format!("the {key} {fault}"), &hint)
         })
+    }
+}
+
+/// What columns may have in place of an unknown unit of a dimension.
+fn unmarked(dimension: Dimension, fault: &QuantityFault) -> &'static str {
+    match (dimension, fault) {
+        (Dimension::Ratio, QuantityFault::UnknownUnit(_)) => "; `-` or mm/mm of a plain ratio",
+        _ => "",
     }
 }
 

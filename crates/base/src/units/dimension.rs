@@ -31,7 +31,7 @@ pub enum Dimension {
     Concentration,
     /// Internal unit rad.
     Angle,
-    /// A ratio, written as a bare number or in percent.
+    /// A ratio, written as a bare number or in percent, per mille or microstrain.
     Ratio,
 }
 
@@ -199,4 +199,6 @@ pub const UNITS: &[(&str, Dimension, f64)] = &[
     ("rad", Dimension::Angle, 1.0),
     ("°", Dimension::Angle, std::f64::consts::PI / 180.0),
     ("%", Dimension::Ratio, 1e-2),
+    ("‰", Dimension::Ratio, 1e-3),
+    ("µε", Dimension::Ratio, 1e-6),
 ];

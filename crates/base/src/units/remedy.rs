@@ -63,6 +63,8 @@ const SPELLINGS: &[(&str, &[&str])] = &[
     ("rad", &["radian", "radians"]),
     ("deg", &["degree", "degrees", "grad"]),
     ("%", &["percent", "per cent", "prozent", "pct"]),
+    ("‰", &["permille", "per mille", "promille"]),
+    ("µε", &["ue", "microstrain", "microstrains", "micro strain"]),
 ];
 
 impl QuantityFault {
@@ -165,6 +167,8 @@ fn meant(unit: &str, dimension: Dimension) -> Option<&'static str> {
     let spelled = SPELLINGS
         .iter()
         .find(|(symbol, spellings)| of_dimension(symbol) && spellings.contains(&&*lower));
+    // Signs of ratios are near to any other short unit.
+    let is_word = |known: &&str| known.len() > 2 && dimension != Dimension::Ratio;
     let in_other_case = || {
         dimension
             .units()
@@ -173,7 +177,7 @@ fn meant(unit: &str, dimension: Dimension) -> Option<&'static str> {
     spelled
         .map(|(symbol, _)| *symbol)
         .or_else(in_other_case)
-        .or_else(|| nearest(unit, dimension.units().filter(|known| known.len() > 2)))
+        .or_else(|| nearest(unit, dimension.units().filter(is_word)))
         .or_else(|| {
             let words = SPELLINGS.iter().filter(|(symbol, _)| of_dimension(symbol));
             let words = words
@@ -235,6 +239,10 @@ mod tests {
             ("MM", Some("mm")),
             ("MPa·s", Some("MPa·s")),
             ("furlong", None),
+            ("\u{3bc}ε", Some("µε")),
+            ("ue", Some("µε")),
+            ("Microstrain", Some("µε")),
+            ("px", None),
         ] {
             assert_eq!(symbol(unit), expected, "{unit}");
         }
@@ -303,6 +311,7 @@ mod tests {
             ("15 N", Dimension::Length, "write a length such as \"2 mm\""),
             ("wide", Dimension::Length, "write a length such as \"2 mm\""),
             ("3 furlong", Dimension::Length, "known units: mm, cm, m"),
+            ("3 px", Dimension::Ratio, "known units: %, ‰, µε"),
         ] {
             let message = remedy(text, dimension);
             assert!(message.contains(expected), "{text}: {message}");

@@ -23,6 +23,9 @@ fn quantities_are_converted_to_internal_units() {
         Ok(24.0 * 1e-9)
     );
     assert_eq!(parse("50 %", Dimension::Ratio), Ok(0.5));
+    assert_eq!(parse("500 ‰", Dimension::Ratio), Ok(0.5));
+    assert_eq!(parse("5e5 \u{3bc}ε", Dimension::Ratio), Ok(5e5 * 1e-6));
+    assert_eq!(factor("µε", Dimension::Ratio), Ok(1e-6));
     assert_eq!(parse("0.5", Dimension::Ratio), Ok(0.5));
 }
 

@@ -90,6 +90,10 @@ fn contradictions_and_impossible_values_are_refused_with_their_place() {
             "the unknown unit `mPa` (`mPa` is a thousandth of a Pa: if MPa is meant, correct it or give --stress-unit MPa; if not, give --stress-unit mPa)",
         ),
         (
+            "# test: uniaxial\nnominal_strain [foo],nominal_stress [MPa]\n1,0",
+            "known units: %, ‰, µε; `-` or mm/mm of a plain ratio",
+        ),
+        (
             "# test: uniaxial\nstretch [-],strss [MPa]\n1,0",
             "there is no column of stresses",
         ),
