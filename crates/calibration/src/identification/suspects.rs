@@ -26,6 +26,9 @@ const TAKEN: f64 = 0.5;
 /// The least share of zᵀz in I: a smaller one is part of K(·), D(·) or the motion.
 const LEAST_SHARE: f64 = 1e-6;
 
+/// A mass that is smaller by more than this share of itself is negative, beyond the error of one linearised step.
+const TURNED: f64 = 1.5;
+
 /// A possible fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Suspect {
@@ -41,6 +44,8 @@ enum Suspect {
     Lag,
     /// A mass that is larger than stated, in tonne.
     Mass,
+    /// A force that is counted in the direction opposite to the extension: a mass that is negative.
+    SignOfForce,
     /// A K(·) that steps at rest, in N/mm.
     StepOfK,
     /// A force of constant size against the motion, in N.
@@ -74,6 +79,7 @@ impl Suspect {
             Self::Lag => ("a force that is recorded", 1e3, "ms later than the motion"),
             Self::Mass if amount < 0.0 => ("a mass that is smaller by", -1e6, "g"),
             Self::Mass => ("a mass that is larger by", 1e6, "g"),
+            Self::SignOfForce => return "a force of the wrong sign".to_owned(),
             Self::StepOfK => ("a step of K(·) at rest by", 1.0, "N/mm"),
             Self::Friction => ("a dry friction of", 1.0, "N"),
         };
@@ -100,7 +106,7 @@ fn column(joint: &Joint, motion: &FittedMotion, suspect: Suspect) -> Column {
             Suspect::ForceDrift => [0.0, (times[i] - times[0]) / duration - 0.5],
             Suspect::ExtensionDrift => [(times[i] - times[0]) / duration - 0.5, 0.0],
             Suspect::Lag => [0.0, -rate(i)],
-            Suspect::Mass => [0.0, motion.acceleration[i]],
+            Suspect::Mass | Suspect::SignOfForce => [0.0, motion.acceleration[i]],
             Suspect::StepOfK => [0.0, 0.5 * x.abs()],
             Suspect::Friction => [0.0, v.signum()],
         }
@@ -212,6 +218,12 @@ pub fn examine(
     };
     let mut sure = trials(joint, state, fit, penalised);
     sure.retain(is_sure);
+    // No mass is negative: one that seems to be is that of a force with the other sign.
+    for suspected in &mut sure {
+        if suspected.suspect == Suspect::Mass && suspected.amount < -TURNED * joint.recording.mass {
+            suspected.suspect = Suspect::SignOfForce;
+        }
+    }
     sure.sort_by(|a, b| b.size().total_cmp(&a.size()));
     sure
 }

@@ -43,19 +43,26 @@ fn is_steady(motion: &FittedMotion) -> bool {
     within < SHARE * all
 }
 
+/// At how many of its positions a function is significantly negative.
+fn negative_positions(function: &Function) -> usize {
+    let positions = function.positions(POSITIONS).into_iter();
+    positions
+        .filter(|x| function.at(*x).interval[1] < 0.0)
+        .count()
+}
+
+/// What a function of this name that is significantly negative throughout says of the recording.
+fn of_signs(name: &str) -> String {
+    format!("{name}(·) is negative: reverse the sign of the force or of the extension")
+}
+
 /// The doubts about functions that are significantly negative somewhere, which is impossible for a passive body.
 fn negative(result: &Identification) -> Vec<String> {
     let mut doubts = Vec::new();
     for (name, _, function) in result.functions() {
-        let is_negative = function
-            .positions(POSITIONS)
-            .into_iter()
-            .map(|x| function.at(x).interval[1] < 0.0);
-        let count = is_negative.filter(|is_negative| *is_negative).count();
+        let count = negative_positions(function);
         if count == POSITIONS {
-            doubts.push(format!(
-                "{name}(·) is negative: reverse the sign of the force or of the extension"
-            ));
+            doubts.push(of_signs(name));
         } else if count > 0 {
             doubts.push(format!(
                 "{name}(·) is negative somewhere: impossible for a passive spring or dashpot"
@@ -99,10 +106,15 @@ impl Evidence<'_> {
             Some(excess) if result.misfit > MOST_MISFIT => (Some(excess), None),
             excess => (None, excess),
         };
-        let reasons: Vec<String> = description(self.suspects)
-            .into_iter()
-            .chain(reason)
-            .collect();
+        let suspected = description(self.suspects);
+        // Where the force is counted with the wrong sign, inertia is too, and whatever changes it seems suspect.
+        let is_reversed = negative_positions(&result.stiffness) == POSITIONS;
+        let suspected = if is_reversed && (suspected.is_some() || reason.is_some()) {
+            Some(of_signs("K"))
+        } else {
+            suspected
+        };
+        let reasons: Vec<String> = suspected.into_iter().chain(reason).collect();
         let doubts = if reasons.is_empty() {
             doubt.into_iter().chain(self.doubts(result)).collect()
         } else {

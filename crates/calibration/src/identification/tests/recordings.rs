@@ -119,6 +119,32 @@ fn what_smooth_functions_go_past_is_named() {
     assert_eq!(asked_for(&actual), None);
 }
 
+/// Inertia does not turn with the sign of the force: a mass that is smaller than nothing, or a lag, would explain the recording too.
+#[test]
+fn a_force_of_the_wrong_sign_is_named_instead_of_an_impossible_mass() {
+    let mut recording = swinging(|_| 0.2, |_| 0.004);
+    recording.mass = 1e-3;
+    // m ẍ of 6 mm sin 2t + 4 mm sin 5.1t.
+    let inertia = |t: f64| -1e-3 * (24.0 * (2.0 * t).sin() + 104.04 * (5.1 * t).sin());
+    let forces = recording.force.iter_mut().zip(&recording.times);
+    forces.for_each(|(force, t)| *force = -(*force + inertia(*t)));
+    let constants = settings([Form::Constant; 2]);
+    let actual = identify(&recording, constants, &|_| ()).unwrap();
+    let expected = "K(·) is negative: reverse the sign of the force";
+    let first = actual.verdict.reasons.first();
+    assert!(
+        first.is_some_and(|first| first.starts_with(expected)),
+        "{:?}",
+        actual.verdict
+    );
+    recording
+        .force
+        .iter_mut()
+        .for_each(|force| *force = -*force);
+    let actual = identify(&recording, constants, &|_| ()).unwrap();
+    assert_eq!(asked_for(&actual), None);
+}
+
 /// What a recording asks for by its verdict.
 fn asked_for(actual: &Identification) -> Option<String> {
     let first = actual.verdict.reasons.first()?;
