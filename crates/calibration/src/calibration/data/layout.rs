@@ -3,6 +3,7 @@
 use super::choice::Choice;
 use super::columns::{Scaled, StressColumn, machine, strain_ratio, strains, stresses, time};
 use super::cycles::{SPECIMEN_NAME, preconditioned, reversals};
+use super::flip::flip;
 use super::mounting::Mounted;
 use super::mounting_statements::refuse_cauchy;
 use super::plausible::{check_signs, implausible, stress_at_rest};
@@ -18,16 +19,6 @@ use crate::error::{Diagnostic, Error};
 use crate::material::parameters::StressMeasure;
 use crate::statistics::farthest;
 use crate::units::Dimension;
-
-/// The key of the columns whose sign is reversed.
-pub const FLIP: &str = "flip";
-
-/// The columns whose sign is reversed.
-const FLIPS: [(&str, [f64; 2]); 3] = [
-    ("strain", [-1.0, 1.0]),
-    ("stress", [1.0, -1.0]),
-    ("both", [-1.0, -1.0]),
-];
 
 /// The meaning of the columns.
 pub struct Layout {
@@ -175,7 +166,8 @@ impl Layout {
             observations.extend(self.observations(row, [first, second], &part));
         }
         let observations = kept;
-        check_signs(head, &observations, self.test)?;
+        let column = self.machine.is_none().then_some(self.strain);
+        check_signs(head, &observations, self.test, column)?;
         let widest = Observation::farthest_strains(&observations);
         let at_rest = stress_at_rest(head, &observations).filter(|_| part.offset == 0.0);
         let warnings = [
@@ -299,19 +291,6 @@ impl Layout {
         };
         [first, second]
     }
-}
-
-/// The signs of strains and stresses that are stated.
-fn flip(head: &Head, measure: StrainColumn) -> Faulty<[f64; 2]> {
-    if head.setting(FLIP, None)?.is_none() {
-        return Ok([1.0; 2]);
-    }
-    let signs = head.choice(FLIP, None, &FLIPS)?;
-    if signs[0] < 0.0 && measure == StrainColumn::Stretch {
-        let message = "a stretch has no sign that could be reversed";
-        return Err(head.fault_of(FLIP, message, "--flip stress reverses the stresses"));
-    }
-    Ok(signs)
 }
 
 /// Missing information and faults, each once.

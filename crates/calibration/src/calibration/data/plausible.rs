@@ -1,5 +1,6 @@
 //! Test data that are impossible or implausible.
 
+use super::flip::FLIP;
 use super::strain_column::StrainColumn;
 use super::test_data::{Observation, Test};
 use crate::document::{Faulty, Head};
@@ -9,8 +10,18 @@ use crate::statistics::{farthest, median};
 /// Positive strains below this share of the largest count as rest in a test of compression.
 const SCATTER: f64 = 1e-3;
 
-/// Refuses data without information, and tests of compression that count pressing as positive.
-pub fn check_signs(head: &Head, observations: &[Observation], test: Test) -> Faulty<()> {
+/// What to do about a machine's displacements, whose sign is turned already.
+const OF_MACHINE: &str = "displacements count from where pressing begins: state that place, such as the one of the first row, by \
+                          --zero \"… mm\"";
+
+/// Refuses data without information, and tests of compression that count pressing as positive; `column` has the strains, where they are not
+/// the displacements of a machine, whose signs are turned.
+pub fn check_signs(
+    head: &Head,
+    observations: &[Observation],
+    test: Test,
+    column: Option<StrainColumn>,
+) -> Faulty<()> {
     let strains = || observations.iter().map(Observation::strain);
     let is_zero = observations.iter().all(|one| one.stress == 0.0)
         || observations
@@ -20,22 +31,37 @@ pub fn check_signs(head: &Head, observations: &[Observation], test: Test) -> Fau
         let hint = "look at the columns and their units";
         return Err(head.fault(0..0, "all strains or all stresses are zero", hint));
     }
+    let work = || {
+        observations
+            .iter()
+            .map(|one| one.strain() * one.stress)
+    };
+    let compression = head.setting("test", None)?.as_deref() == Some("compression");
+    // A machine's reading at rest scatters about zero.
+    let at_rest = strains().fold(0.0, |most: f64, x| most.max(-x)) * SCATTER;
+    if compression && strains().any(|x| x > at_rest) {
+        let message = "a compression test has positive strains";
+        let least = -SCATTER * farthest(strains());
+        let is_reversed = strains().all(|x| x >= least) && head.setting(FLIP, None)?.is_none();
+        let acts_along = work().sum::<f64>() > 0.0;
+        let hint = match column {
+            None => OF_MACHINE,
+            Some(StrainColumn::Stretch) => "give stretches below 1, and stresses a minus sign",
+            Some(_) if is_reversed && acts_along => {
+                "--flip both gives strains and stresses of compression a minus sign"
+            }
+            Some(_) if is_reversed => "--flip strain gives strains of compression a minus sign",
+            Some(_) => "give strains and stresses of compression a minus sign",
+        };
+        return Err(head.fault_of("test", message, hint));
+    }
     // A stress acts against the strain of a single driven axis only during recoil; of two axes, the second may be held back.
-    let work = || observations.iter().map(|one| one.strain() * one.stress);
     let against = !work().any(|work| work > 0.0) && work().any(|work| work < 0.0);
     if against && test != Test::Biaxial {
         let message = "the stresses have the sign that is opposite to the strains";
         let hint =
             "tension is positive in both columns, compression negative: reverse the sign of one";
         return Err(head.fault(0..0, message, hint));
-    }
-    let compression = head.setting("test", None)?.as_deref() == Some("compression");
-    // A machine's reading at rest scatters about zero.
-    let at_rest = strains().fold(0.0, |most: f64, x| most.max(-x)) * SCATTER;
-    if compression && strains().any(|x| x > at_rest) {
-        let message = "a compression test has positive strains";
-        let hint = "give strains and stresses of compression a minus sign, or stretches below 1";
-        return Err(head.fault_of("test", message, hint));
     }
     Ok(())
 }

@@ -4,8 +4,9 @@ use std::path::Path;
 
 use super::choice::COLUMNS;
 use super::cycles::{PRECONDITIONED, SPECIMEN_NAME};
+use super::flip::FLIP;
 use super::gross_rows::{gross_rows, torn_rows};
-use super::layout::{FLIP, Layout};
+use super::layout::Layout;
 use super::row_choice::{ROWS, STRAIN_RANGE, chosen_rows};
 use super::test_data::TestData;
 use crate::document::{Head, Statements, Table};

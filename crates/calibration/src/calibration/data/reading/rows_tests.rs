@@ -150,3 +150,26 @@ fn strains_that_begin_at_one_may_be_stretches() {
             && !warned("nominal_strain", "0,0")
     );
 }
+
+/// Positions of a machine's crosshead count from anywhere; no sign that is reversed makes strains of them.
+#[test]
+fn positions_of_a_press_count_from_a_stated_place() {
+    let rows = (0..50).map(|i| {
+        let u = 0.1 * f64::from(i);
+        let l = 1.0 - u / 20.0;
+        format!("{},{}\n", 35.1 - u, l.powi(-2) - l)
+    });
+    let text = format!("extension [mm],load [N]\n{}", rows.collect::<String>());
+    let with = |zero: &str| {
+        let stated = [("test", "compression"), ("zero", zero)];
+        read(&text, &[&SPECIMEN[..], &stated].concat())
+    };
+    let refused = with("none").unwrap_err();
+    assert!(
+        refused.contains("positive strains (displacements count from where pressing begins")
+            && refused.contains("--zero \"… mm\""),
+        "{refused}"
+    );
+    let data = with("35.1 mm").unwrap();
+    assert!(data.observations.iter().all(|one| one.strains[0] <= 0.0));
+}

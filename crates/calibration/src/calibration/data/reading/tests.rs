@@ -184,7 +184,7 @@ fn columns_that_do_not_fit_together_are_refused() {
         ),
         (
             "# test: compression\nnominal_strain [-],nominal_stress [MPa]\n0.1,1",
-            "a compression test has positive strains",
+            "a compression test has positive strains (--flip both gives strains and stresses",
         ),
         (
             "# test: uniaxial\nstretch [-],nominal_stress [MPa]\n1.1,0\n1.2,0",
