@@ -1,4 +1,4 @@
-//! Numbers with decimal points or with decimal commas, but not both in one file.
+//! Numbers with decimal points or with decimal commas, but not both in one file, and times of clocks.
 
 /// The format of a file's numbers, as far as known.
 #[derive(Default)]
@@ -17,7 +17,8 @@ impl Decimals {
     /// # Errors
     /// [`NotANumber`] with the reason.
     pub fn read(&mut self, field: &str) -> Result<f64, NotANumber> {
-        let value = number(field).ok_or_else(|| match field {
+        let value = number(field).or_else(|| clock_time(field));
+        let value = value.ok_or_else(|| match field {
             "" => NotANumber::Empty,
             _ => NotANumber::Text(field.to_owned()),
         })?;
@@ -31,7 +32,7 @@ impl Decimals {
             self.surely_decimal |=
                 decimals.len() != 3 || complete.len() > 3 || complete.starts_with('0');
         } else {
-            self.ungrouped |= value.abs() >= 100.0;
+            self.ungrouped |= value.abs() >= 100.0 && !is_clock_time(field);
         }
         if self.point && self.comma {
             Err(NotANumber::Mixed(field.to_owned()))
@@ -66,6 +67,21 @@ fn number(field: &str) -> Option<f64> {
         1 if !field.contains('.') => field.replace(',', ".").parse().ok(),
         _ => None,
     }
+}
+
+/// A time as clocks show it, `01:02:03.5` or `01:02:03,5`, in s.
+fn clock_time(field: &str) -> Option<f64> {
+    let mut parts = field.split(':');
+    let whole = |part: &str| part.parse::<u16>().ok().map(f64::from);
+    let (hours, minutes) = (whole(parts.next()?)?, whole(parts.next()?)?);
+    let seconds = parts.next().and_then(number)?;
+    let is_time = minutes < 60.0 && (0.0..60.0).contains(&seconds) && parts.next().is_none();
+    is_time.then_some(3600.0 * hours + 60.0 * minutes + seconds)
+}
+
+/// Whether a field that was read is the time of a clock.
+pub(super) fn is_clock_time(field: &str) -> bool {
+    field.contains(':')
 }
 
 /// Whether a field is a number.

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use super::Faults;
 use super::columns::{Above, Column, unquoted};
 use super::converted::TableText;
-use super::decimals::{Decimals, NotANumber, is_hole};
+use super::decimals::{Decimals, NotANumber, is_clock_time, is_hole};
 use super::encoding::TextEncoding;
 use super::file::MOST_OF_DATA;
 use super::formats;
@@ -246,32 +246,40 @@ impl Table {
         }
         self.faults.resize(count, None);
         self.nonsense.resize(count, None);
-        let row = record
-            .iter()
-            .take(count)
-            .enumerate()
-            .map(|(column, field)| {
-                let field = unquoted(field);
-                decimals.read(field).unwrap_or_else(|reason| {
-                    let fault = (self.rows.len(), reason);
-                    if !is_hole(field) {
-                        self.nonsense[column].get_or_insert(fault.clone());
-                    }
-                    self.faults[column].get_or_insert(fault);
-                    f64::NAN
-                })
-            });
-        let row = row.collect();
+        let fields = record.iter().take(count).enumerate();
+        let row = fields
+            .map(|(column, field)| self.read_field(column, unquoted(field), decimals))
+            .collect();
         self.rows.push((row, position));
     }
 
-    /// The table with some of its rows, in their order, including all whose fields are nonsense.
+    /// The number in a field of the next row, NaN where it is none; a column of clock times is in s.
+    fn read_field(&mut self, column: usize, field: &str, decimals: &mut Decimals) -> f64 {
+        match decimals.read(field) {
+            Ok(value) => {
+                if is_clock_time(field) {
+                    self.columns[column].unit = Some("s".to_owned());
+                }
+                value
+            }
+            Err(reason) => {
+                let fault = (self.rows.len(), reason);
+                if !is_hole(field) {
+                    self.nonsense[column].get_or_insert(fault.clone());
+                }
+                self.faults[column].get_or_insert(fault);
+                f64::NAN
+            }
+        }
+    }
+
+    /// The table with some of its rows, in the order of `kept`, including all whose fields are nonsense.
     pub fn with_rows(&self, kept: &[usize]) -> Self {
         let lacks = |i: usize| kept.iter().position(|row| self.rows[*row].0[i].is_nan());
         let first = |(i, fault): (usize, &FieldFault)| Some((lacks(i)?, fault.clone()?.1));
         let again = |fault: &FieldFault| {
             let (row, reason) = fault.clone()?;
-            Some((kept.binary_search(&row).ok()?, reason))
+            Some((kept.iter().position(|kept| *kept == row)?, reason))
         };
         Self {
             source: Arc::clone(&self.source),

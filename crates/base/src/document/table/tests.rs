@@ -38,6 +38,23 @@ fn names_units_and_head_are_found() {
 }
 
 #[test]
+fn times_of_a_clock_are_in_seconds() {
+    let expected = vec![vec![1.05, 1.0], vec![3661.5, 950.0]];
+    for text in [
+        "Time,Load [N]\n00:00:01.050,1\n01:01:01.5,950\n",
+        "Time [hh:mm:ss];Load [N]\n00:00:01,050;1\n1:01:01,5;950\n",
+    ] {
+        let table = Table::parse("a.csv", text).unwrap();
+        assert_eq!(table.columns[0].unit.as_deref(), Some("s"), "{text}");
+        assert_eq!(rows(text), expected, "{text}");
+    }
+    for field in ["12:75:00", "01:02", "1:2:3:4", "a:01:02"] {
+        let table = Table::parse("a.csv", &format!("t,F\n{field},1\n0,2\n")).unwrap();
+        assert!(table.check_numbers([0], "").is_err(), "{field}");
+    }
+}
+
+#[test]
 fn bad_tables_are_refused_with_line_and_reason() {
     for (text, reason) in [
         ("", "no columns"),

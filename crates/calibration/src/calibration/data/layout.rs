@@ -131,6 +131,15 @@ impl Layout {
         all.into_iter().map(|at| rows[at]).collect()
     }
 
+    /// Whether the times of some rows decrease from each to the next.
+    pub fn runs_backwards(&self, table: &Table, rows: &[usize]) -> bool {
+        let Some(Ok((column, _))) = self.time else {
+            return false;
+        };
+        let time = |row: usize| table.rows[row].0[column];
+        rows.len() > 1 && rows.windows(2).all(|pair| time(pair[1]) < time(pair[0]))
+    }
+
     /// The strains of an observation along an axis: the strain across a strip is not known.
     fn along(&self, axis: usize, [first, second]: [f64; 2]) -> [f64; 2] {
         if self.test == Test::Uniaxial && axis == 1 {

@@ -78,7 +78,11 @@ impl TestData {
         if measured.is_empty() {
             table.check_numbers(layout.columns(), hint)?;
         }
-        let chosen = chosen_rows(&head, &measured).map_err(|fault| input(*fault))?;
+        let mut chosen = chosen_rows(&head, &measured).map_err(|fault| input(*fault))?;
+        let is_backwards = layout.runs_backwards(table, &chosen);
+        if is_backwards {
+            chosen.reverse();
+        }
         let rows_are_stated = head.text(ROWS).map_err(|fault| input(*fault))?.is_some();
         let (mut gross, mut torn) = (Vec::new(), Vec::new());
         if !rows_are_stated {
@@ -88,12 +92,15 @@ impl TestData {
         }
         let is_good = |row: &usize| !gross.contains(row) && !torn.contains(row);
         let (chosen, _) = kept(&chosen, is_good);
-        let fewer = (chosen.len() < all.len()).then(|| table.with_rows(&chosen));
+        let fewer = (chosen != all).then(|| table.with_rows(&chosen));
         let head = match &fewer {
             Some(fewer) => Head::new(fewer, &KEYS, reading)?,
             None => head,
         };
         let mut data = layout.read(&head).map_err(|fault| input(*fault))?;
+        data.remarks.extend(is_backwards.then(|| {
+            "the times decrease: the rows are read from the last to the first".to_owned()
+        }));
         data.warnings.extend((holes > 0).then(|| {
             let message = format!(
                 "{}: rows without a number for strain or stress: {holes}",

@@ -27,6 +27,24 @@ fn rows_that_are_cut_within_a_cycle_have_the_loading_branches_that_are_whole() {
     );
 }
 
+/// Some programs write what was measured last into the first line.
+#[test]
+fn rows_whose_times_decrease_are_read_from_the_last_to_the_first() {
+    let text = record(1.3, NAMES);
+    let lines: Vec<&str> = text.lines().collect();
+    let rows = lines[2..].iter().rev().copied();
+    let reversed: Vec<&str> = lines[..2].iter().copied().chain(rows).collect();
+    let [forward, backward] = [text.clone(), reversed.join("\n")];
+    let [forward, backward] = [forward, backward].map(|text| read(&text, &SPECIMEN).unwrap());
+    assert_eq!(stresses(&backward), stresses(&forward));
+    let is_told = |data: &TestData| {
+        data.remarks
+            .iter()
+            .any(|one| one.contains("times decrease"))
+    };
+    assert!(is_told(&backward) && !is_told(&forward));
+}
+
 /// A strain range counts from the zero of the specimen, which the rows outside of it show.
 #[test]
 fn a_range_of_strains_is_that_of_the_strains_that_are_fitted() {
