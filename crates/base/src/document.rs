@@ -55,7 +55,7 @@ pub use head::{Faulty, Head, Statements};
 pub use keys::{Key, Presence, Takes};
 pub use records::{read_records, write_records};
 pub use section::Section;
-pub use table::Table;
+pub use table::{Table, TextPart};
 pub use text::read_text;
 pub use written::Written;
 

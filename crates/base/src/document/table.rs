@@ -12,12 +12,18 @@ use super::decimals::{Decimals, NotANumber, is_clock_time, is_hole};
 use super::encoding::TextEncoding;
 use super::file::MOST_OF_DATA;
 use super::formats;
-use super::lines::{SURVEYED, blanks_to_tabs, delimiter, line_at, plain_text};
+use super::lines::{SURVEYED, line_at};
 use super::text::{bytes, text_of_data};
 use crate::error::{Diagnostic, Error, Source};
 
 /// A field that is not a number: its row and the fault.
 type FieldFault = Option<(usize, NotANumber)>;
+
+/// The part of a text in which rows are read, by the statements of a table whose rows are not read yet.
+pub type TextPart<'a> = &'a dyn Fn(&Table) -> Range<usize>;
+
+/// All of a text.
+const WHOLE: TextPart<'static> = &|table: &Table| 0..table.source.text.len();
 
 /// A table of a file.
 #[derive(Debug)]
@@ -61,16 +67,25 @@ impl Table {
     /// # Errors
     /// [`Error::Input`] with file, line and reason.
     pub fn read_as(path: &Path, wanted: Option<TextEncoding>, hint: &str) -> Result<Self, Error> {
-        let (file, part) = formats::file_and_part(path);
+        Self::read_within(path, wanted, hint, WHOLE)
+    }
+
+    fn read_within(
+        path: &Path,
+        wanted: Option<TextEncoding>,
+        hint: &str,
+        part: TextPart,
+    ) -> Result<Self, Error> {
+        let (file, sheet) = formats::file_and_part(path);
         let bytes = bytes(&file, MOST_OF_DATA, hint)?;
-        let tables = formats::tables(&bytes, part.as_deref()).map_err(|fault| {
+        let tables = formats::tables(&bytes, sheet.as_deref()).map_err(|fault| {
             Error::input(format!("{} {}", file.display(), fault.message), fault.hint)
         })?;
         if let Some(tables) = tables {
-            return Self::first(&file, &tables);
+            return Self::first(&file, &tables, part);
         }
         let (text, encoding) = text_of_data(&file, &bytes, wanted, hint)?;
-        let table = Self::parse(&path.display().to_string(), &text)?;
+        let table = Self::parse_part(&path.display().to_string(), &text, part)?;
         Ok(Self {
             encoding: Some(encoding),
             ..table
@@ -78,14 +93,14 @@ impl Table {
     }
 
     /// The first of several texts that is a table.
-    fn first(file: &Path, texts: &[TableText]) -> Result<Self, Error> {
+    fn first(file: &Path, texts: &[TableText], part: TextPart) -> Result<Self, Error> {
         let read = |text: &TableText| {
             let file = file.display();
             let name = match &text.name {
                 Some(name) => format!("{file}#{name}"),
                 None => file.to_string(),
             };
-            let table = Self::separated(&name, text.text.clone(), b'\t')?;
+            let table = Self::separated(&name, text.text.clone(), b'\t', part)?;
             Ok(Self {
                 part: text.name.clone(),
                 is_text: false,
@@ -108,11 +123,7 @@ impl Table {
     /// # Errors
     /// [`Error::Input`] with every fault and its place.
     pub fn parse(name: &str, text: &str) -> Result<Self, Error> {
-        let text = blanks_to_tabs(plain_text(text));
-        match delimiter(&text) {
-            Some(delimiter) => Self::separated(name, text, delimiter),
-            None => Err(Self::empty(name, text, b',').without_columns()),
-        }
+        Self::parse_part(name, text, WHOLE)
     }
 
     fn empty(name: &str, text: String, delimiter: u8) -> Self {
@@ -140,10 +151,10 @@ impl Table {
     }
 
     /// Reads a text whose columns have a known separator.
-    fn separated(name: &str, text: String, delimiter: u8) -> Result<Self, Error> {
+    fn separated(name: &str, text: String, delimiter: u8, part: TextPart) -> Result<Self, Error> {
         let mut table = Self::empty(name, text.clone(), delimiter);
         let faults = Faults::default();
-        table.read_records(&text, &faults);
+        table.read_records(&text, &part(&table), &faults);
         faults.finish()?;
         if table.columns.len() == 1 {
             Err(table.without_columns())
@@ -169,7 +180,7 @@ impl Table {
             .from_reader(text.as_bytes())
     }
 
-    fn read_records(&mut self, text: &str, faults: &Faults) {
+    fn read_records(&mut self, text: &str, part: &Range<usize>, faults: &Faults) {
         let mut surveyed = self.records(text);
         let first = surveyed.records().map_while(Result::ok);
         let first = first.filter(|record| !record.iter().all(str::is_empty));
@@ -194,8 +205,10 @@ impl Table {
                 self.columns_place = position;
             } else if Some(line) == above.units {
                 self.add_units(&record);
-            } else if line >= above.first_row {
+            } else if line >= above.first_row && part.contains(&position.start) {
                 self.add_row(&record, position, &mut decimals, faults);
+            } else if line >= above.first_row {
+                self.add_unread_row(record.len(), position);
             }
             line += 1;
         }
@@ -369,6 +382,7 @@ impl Table {
     }
 }
 
+mod parts;
 mod settled;
 
 #[cfg(test)]

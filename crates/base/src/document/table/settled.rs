@@ -42,7 +42,7 @@ impl Table {
             return;
         };
         let is_hole = |row: &(Vec<f64>, Range<usize>)| row.0[last].is_nan();
-        let is_empty = matches!(self.faults[last], Some((0, NotANumber::Empty)));
+        let is_empty = matches!(self.faults[last], Some((_, NotANumber::Empty)));
         let is_plain = self.columns[last] == Column::default() && self.nonsense[last].is_none();
         if is_empty && is_plain && self.rows.iter().all(is_hole) {
             self.columns.truncate(last);

@@ -150,7 +150,8 @@ fn size_at_rest(head: &Head, roles: &[Role], axis: usize) -> Option<f64> {
             columns.find(|(_, role)| role.axis() == axis && role.measure == measure)?;
         let column_head = &head.table.columns[column];
         let factor = units::factor(column_head.unit.as_deref()?, Dimension::Length).ok()?;
-        Some(factor * head.table.rows.first()?.0[column])
+        let mut rows = head.table.rows.iter().map(|(row, _)| row[column]);
+        Some(factor * rows.find(|value| value.is_finite())?)
     };
     let size = first(Kind::Size, None)? - first(Kind::Strain, Some(DISPLACEMENT)).unwrap_or(0.0);
     Some(size).filter(|size| *size > 0.0)

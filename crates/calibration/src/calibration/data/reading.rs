@@ -1,5 +1,6 @@
 //! Test data from files.
 
+use std::ops::Range;
 use std::path::Path;
 
 use super::choice::COLUMNS;
@@ -7,7 +8,7 @@ use super::cycles::{PRECONDITIONED, SPECIMEN_NAME};
 use super::flip::FLIP;
 use super::gross_rows::{gross_rows, torn_rows};
 use super::layout::Layout;
-use super::row_choice::{ROWS, STRAIN_RANGE, chosen_rows};
+use super::row_choice::{ROWS, STRAIN_RANGE, chosen_rows, chosen_text};
 use super::test_data::TestData;
 use crate::document::{Head, Statements, Table};
 use crate::error::{Diagnostic, Error};
@@ -53,7 +54,8 @@ impl TestData {
     /// # Errors
     /// [`Error::Input`] with file, line and reason; nothing is ever guessed.
     pub fn read(path: &Path, reading: &Statements) -> Result<Self, Error> {
-        Self::of_table(&Table::read(path, Table::HINT)?, reading)
+        let part = |table: &Table| chosen_part(table, reading);
+        Self::of_table(&Table::read_part(path, Table::HINT, &part)?, reading)
     }
 
     /// Reads a text.
@@ -61,7 +63,8 @@ impl TestData {
     /// # Errors
     /// As [`Self::read`].
     pub fn parse(name: &str, text: &str, reading: &Statements) -> Result<Self, Error> {
-        Self::of_table(&Table::parse(name, text)?, reading)
+        let part = |table: &Table| chosen_part(table, reading);
+        Self::of_table(&Table::parse_part(name, text, &part)?, reading)
     }
 
     fn of_table(table: &Table, reading: &Statements) -> Result<Self, Error> {
@@ -74,11 +77,12 @@ impl TestData {
             layout.columns().all(|column| values[column].is_finite())
         };
         let all: Vec<usize> = (0..table.rows.len()).collect();
-        let (measured, holes) = kept(&all, is_measured);
-        if measured.is_empty() {
-            table.check_numbers(layout.columns(), hint)?;
+        let stated = chosen_rows(&head, &all).map_err(|fault| input(*fault))?;
+        let (mut chosen, holes) = kept(&stated, is_measured);
+        if chosen.is_empty() {
+            let only = table.with_rows(&stated);
+            only.check_numbers(layout.columns(), hint)?;
         }
-        let mut chosen = chosen_rows(&head, &measured).map_err(|fault| input(*fault))?;
         let is_backwards = layout.runs_backwards(table, &chosen);
         if is_backwards {
             chosen.reverse();
@@ -118,6 +122,12 @@ impl TestData {
         data.warnings.extend(gross.into_iter().chain(torn));
         Ok(data)
     }
+}
+
+/// The part of a table's text with the rows that are stated; all of it where the statements are at fault, which is told later.
+fn chosen_part(table: &Table, reading: &Statements) -> Range<usize> {
+    let head = Head::new(table, &KEYS, reading);
+    head.map_or(0..usize::MAX, |head| chosen_text(&head))
 }
 
 /// The warning about rows that are left out, where there are any.

@@ -35,6 +35,24 @@ pub fn chosen_rows(head: &Head, rows: &[usize]) -> Faulty<Vec<usize>> {
     Ok(chosen)
 }
 
+/// The part of a table's text with the lines that are stated by [`ROWS`]; all of it where none are, or where the statement cannot be read.
+pub fn chosen_text(head: &Head) -> Range<usize> {
+    let text = &head.table.source.text;
+    let start_of = |line: usize| {
+        let mut ends = text.match_indices('\n');
+        let end_before = line.checked_sub(2).map(|before| ends.nth(before));
+        end_before.map_or(0, |end| end.map_or(text.len(), |(at, _)| at + 1))
+    };
+    let mut part = 0..text.len();
+    for condition in conditions(head).unwrap_or_default() {
+        if let Condition::Lines([first, last]) = condition {
+            part.start = part.start.max(start_of(first));
+            part.end = part.end.min(start_of(last.saturating_add(1)));
+        }
+    }
+    part
+}
+
 /// Those of some rows whose strains, from the zero on, are in the stated [`STRAIN_RANGE`]; all of them where none is.
 ///
 /// # Errors

@@ -45,6 +45,38 @@ fn rows_whose_times_decrease_are_read_from_the_last_to_the_first() {
     assert!(is_told(&backward) && !is_told(&forward));
 }
 
+/// Two specimens in one file, between them a title and the names again, and words in the last line.
+#[test]
+fn lines_that_are_not_chosen_are_not_at_fault() {
+    let rows = |stiffness: f64| -> String {
+        let row = |i: u8| format!("{i},{},{}\n", 0.1 * f64::from(i), stiffness * f64::from(i));
+        (0..40).map(row).collect()
+    };
+    let [first, second] = [0.01, 0.02].map(rows);
+    let text = format!("{NAMES}\n{first}\n\nSpecimen 2\n{NAMES}\n{second}lost,x,y\n");
+    let stated = [("test", "uniaxial"), ("zero", "none")];
+    let with = |text: &str, more: &[(&str, &str)]| {
+        read(text, &[&SPECIMEN[..], &stated[..], more].concat())
+    };
+    assert!(with(&text, &[]).unwrap_err().contains("a.csv:44: 1 fields"));
+    for (lines, expected) in [("2..41", first), ("46..85", second)] {
+        let alone = with(&format!("{NAMES}\n{expected}"), &[]).unwrap();
+        let data = with(&text, &[("rows", lines)]).unwrap();
+        assert_eq!(stresses(&data), stresses(&alone), "{lines}");
+        let Times::Known(times) = &data.times else {
+            panic!("{:?}", data.times)
+        };
+        assert_eq!(times.len(), 40);
+        assert!(data.warnings.is_empty(), "{:?}", data.warnings);
+    }
+    let written = format!("# rows: 3..42\n{text}");
+    assert_eq!(with(&written, &[]).unwrap().observations.len(), 40);
+    let refused = with(&text, &[("rows", "2..85")]).unwrap_err();
+    assert!(refused.contains("a.csv:44: 1 fields"), "{refused}");
+    let refused = with(&text, &[("rows", "900..")]).unwrap_err();
+    assert!(refused.contains("the rows leave no row"), "{refused}");
+}
+
 /// A strain range counts from the zero of the specimen, which the rows outside of it show.
 #[test]
 fn a_range_of_strains_is_that_of_the_strains_that_are_fitted() {
