@@ -67,14 +67,15 @@ pub fn group(arguments: GroupArguments) -> Outcome {
         ..FitSettings::default()
     };
     let reading = arguments.reading.reading()?;
-    let fitted =
-        |files: &[PathBuf]| Group::new(arguments.law, &read_tests(files, &reading)?, &settings);
-    let mut groups = vec![fitted(&arguments.data)?];
-    if !arguments.against.is_empty() {
-        groups.push(fitted(&arguments.against)?);
+    let files = [&arguments.data[..], &arguments.against[..]].concat();
+    let mut tests = read_tests(&files, &reading)?;
+    let others = tests.split_off(arguments.data.len());
+    let fitted = |tests: &[TestData]| Group::new(arguments.law, tests, &settings);
+    let mut groups = vec![fitted(&tests)?];
+    if !others.is_empty() {
+        groups.push(fitted(&others)?);
     }
     let named = named(groups, arguments.names, &settings)?;
-    let files = [arguments.data, arguments.against].concat();
     write(
         (&arguments.output, &arguments.name),
         &arguments.style.style(),

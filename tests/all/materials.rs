@@ -238,7 +238,7 @@ fn a_stated_parameter_is_held_and_stands_on_the_card() {
 }
 
 /// Two groups of uniaxial tests: means, spread and difference in one table, a picture, and a card of each mean law, which a fit of its data
-/// is again; a single specimen and tests of two kinds are refused.
+/// is again; a single specimen, tests of two kinds and a test that is given twice are refused.
 #[test]
 fn groups_of_specimens_are_averaged_and_compared() {
     let folder = tempfile::TempDir::new().unwrap();
@@ -259,6 +259,7 @@ fn groups_of_specimens_are_averaged_and_compared() {
         write(&format!("{number}.csv"), "uniaxial", c10);
     }
     write("planar.csv", "planar", 0.1);
+    write("copy.csv", "uniaxial", 0.1);
     let group = |files: &[&str]| {
         let more = [
             "--names",
@@ -308,9 +309,17 @@ fn groups_of_specimens_are_averaged_and_compared() {
             &["0.csv", "1.csv", "--against", "2.csv"],
             "2 values required",
         ),
+        (&["0.csv", "0.csv", "1.csv"], "0.csv is given twice"),
+        (
+            &["0.csv", "1.csv", "--against", "2.csv", "copy.csv"],
+            "copy.csv has the same rows as 1.csv",
+        ),
     ] {
         let run = group(files).code(2);
         let printed = crate::common::words(&run.get_output().stderr);
         assert!(printed.contains(message), "{printed}");
     }
+    let fit = ["materials", "fit", "0.csv", "0.csv", "--law", "neo-hooke"];
+    let run = gelbench(folder.path(), &fit).code(2);
+    assert!(words(&run.get_output().stderr).contains("0.csv is given twice"));
 }
