@@ -15,7 +15,8 @@ use super::test_reading::{ReadingArguments, read_tests};
 use gelbench_base::error::Error;
 use gelbench_base::statistics::Estimate;
 use gelbench_calibration::calibration::{
-    Conversion, FitSettings, Group, GroupState, Provenance, StrainColumn, Weighting, card_text,
+    Conversion, FitSettings, Group, GroupState, Provenance, StrainColumn, TestData, Weighting,
+    card_text,
 };
 use gelbench_mechanics::material::registry::Law;
 use gelbench_report::output::{ResultFolder, write_picture};

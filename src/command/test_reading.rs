@@ -178,13 +178,6 @@ impl ReadingArguments {
     }
 }
 
-/// Reads the tests of some files, and prints their warnings.
-pub fn read_tests(files: &[PathBuf], reading: &Statements) -> Result<Vec<TestData>, Error> {
-    let tests = together(files.iter().map(|path| TestData::read(path, reading)))?;
-    tests.iter().for_each(|test| warn(&test.warnings));
-    Ok(tests)
-}
-
 /// Statements with those of a preset, which is a file of the lines that the head of a table may have; it is written from the statements where
 /// there is none.
 fn with_preset(name: &str, stated: Statements) -> Result<Statements, Error> {
@@ -232,7 +225,7 @@ fn with_preset(name: &str, stated: Statements) -> Result<Statements, Error> {
     Ok(all)
 }
 
-/// The tests of some files, whose warnings are told.
+/// Reads the tests of some files, and prints their warnings.
 ///
 /// # Errors
 /// [`Error::Input`] with the faults of all files, and where a test is given twice: it would count as two.

@@ -31,11 +31,7 @@ pub fn check_signs(
         let hint = "look at the columns and their units";
         return Err(head.fault(0..0, "all strains or all stresses are zero", hint));
     }
-    let work = || {
-        observations
-            .iter()
-            .map(|one| one.strain() * one.stress)
-    };
+    let work = || observations.iter().map(|one| one.strain() * one.stress);
     let compression = head.setting("test", None)?.as_deref() == Some("compression");
     // A machine's reading at rest scatters about zero.
     let at_rest = strains().fold(0.0, |most: f64, x| most.max(-x)) * SCATTER;

@@ -122,7 +122,7 @@ fn what_smooth_functions_go_past_is_named() {
 /// Inertia does not turn with the sign of the force: a mass that is smaller than nothing, or a lag, would explain the recording too.
 #[test]
 fn a_force_of_the_wrong_sign_is_named_instead_of_an_impossible_mass() {
-    let mut recording = swinging(|_| 0.2, |_| 0.004);
+    let mut recording = swinging([6.0, 4.0], |_| 0.2, |_| 0.004);
     recording.mass = 1e-3;
     // m ẍ of 6 mm sin 2t + 4 mm sin 5.1t.
     let inertia = |t: f64| -1e-3 * (24.0 * (2.0 * t).sin() + 104.04 * (5.1 * t).sin());
