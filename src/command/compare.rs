@@ -100,8 +100,7 @@ pub fn run(options: Options) -> Outcome {
     print_report(|| json(&compared, &differences, &doubts, &options.field))?;
     if let Some(folder) = &options.output {
         let inputs = [&*options.study, &*options.field];
-        let mut results = ResultFolder::open(folder, "compare", &inputs)?;
-        interrupt::guard(&results);
+        let mut results = interrupt::guarded(|| ResultFolder::open(folder, "compare", &inputs))?;
         warn(results.replaces().as_slice());
         warn(&write(
             &compared,

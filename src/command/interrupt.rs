@@ -4,6 +4,7 @@ use std::io::Write;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use gelbench_base::document::inputs;
+use gelbench_base::error::Error;
 use gelbench_report::output::{self, Remains, ResultFolder, Unfinished};
 
 /// The exit code of a command that was interrupted: 128 and the number of the signal.
@@ -36,6 +37,17 @@ pub fn attend() {
 pub fn guard(folder: &ResultFolder) {
     let mut unfinished = UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner);
     *unfinished = Some(folder.unfinished());
+}
+
+/// Opens a folder whose unfinished results an interrupt removes; one that comes meanwhile waits until it is open.
+///
+/// # Errors
+/// Those of opening it.
+pub fn guarded(open: impl FnOnce() -> Result<ResultFolder, Error>) -> Result<ResultFolder, Error> {
+    let mut unfinished = UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner);
+    let folder = open()?;
+    *unfinished = Some(folder.unfinished());
+    Ok(folder)
 }
 
 /// The identity of a command: its statement, the contents of all files that it has read, and the program itself.

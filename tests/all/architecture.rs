@@ -63,6 +63,7 @@ const DOORS: &[(&str, &[&str])] = &[
         ],
     ),
     ("zip::", &["crates/base/src/document/archive.rs"]),
+    ("calamine::", &["crates/base/src/document/spreadsheet.rs"]),
     ("encoding_rs::", &["crates/base/src/document/encoding.rs"]),
     ("statrs::", &["crates/base/src/statistics.rs"]),
     (

@@ -67,13 +67,14 @@ pub fn spreadsheet(bytes: &[u8]) -> Became {
     let mut parts = bytes.splitn(3, |byte| *byte == 0);
     let mut part = || parts.next().unwrap_or_default();
     let [sheet, texts, styles] = [part(), part(), part()];
-    let workbook = br#"<workbook><sheets><sheet name="a" r:id="r1"/></sheets></workbook>"#;
-    let references =
-        br#"<Relationships><Relationship Id="r1" Target="sheet1.xml"/></Relationships>"#;
+    let package = br#"<Relationships><Relationship Id="r1" Type="http://schemas.openxmlformats.org/officeDocument/2006/relationships/officeDocument" Target="xl/workbook.xml"/></Relationships>"#;
+    let workbook = br#"<workbook xmlns:r="http://schemas.openxmlformats.org/officeDocument/2006/relationships"><sheets><sheet name="a" sheetId="1" r:id="r1"/></sheets></workbook>"#;
+    let references = br#"<Relationships><Relationship Id="r1" Type="http://schemas.openxmlformats.org/officeDocument/2006/relationships/worksheet" Target="worksheets/sheet1.xml"/></Relationships>"#;
     let archive = stored(&[
+        ("_rels/.rels", package),
         ("xl/workbook.xml", workbook),
         ("xl/_rels/workbook.xml.rels", references),
-        ("xl/sheet1.xml", sheet),
+        ("xl/worksheets/sheet1.xml", sheet),
         ("xl/sharedStrings.xml", texts),
         ("xl/styles.xml", styles),
     ]);

@@ -5,34 +5,39 @@
 pub(super) struct Decimals {
     point: bool,
     comma: bool,
-    /// A comma that cannot group thousands.
+    /// A point or comma that cannot group thousands, or a whole number of thousands without one.
     surely_decimal: bool,
-    /// A whole number of three digits or more without a comma.
-    ungrouped: bool,
+    columns: Vec<Grouping>,
+}
+
+/// What the numbers of a column look like.
+#[derive(Clone, Default)]
+struct Grouping {
+    /// A point or comma before three digits.
+    grouped: bool,
+    /// A whole number of three digits.
+    hundreds: bool,
 }
 
 impl Decimals {
-    /// The number in a field.
+    /// The number in a field of a column.
     ///
     /// # Errors
     /// [`NotANumber`] with the reason.
-    pub fn read(&mut self, field: &str) -> Result<f64, NotANumber> {
+    pub fn read(&mut self, column: usize, field: &str) -> Result<f64, NotANumber> {
         let value = number(field).or_else(|| clock_time(field));
         let value = value.ok_or_else(|| match field {
             "" => NotANumber::Empty,
+            _ if groups_thousands(field) => NotANumber::Grouped(field.to_owned()),
             _ => NotANumber::Text(field.to_owned()),
         })?;
         if !value.is_finite() {
             return Err(NotANumber::Infinite(field.to_owned()));
         }
         self.point |= field.contains('.');
-        if let Some((complete, decimals)) = field.split_once(',') {
-            let complete = complete.trim_start_matches(['+', '-']);
-            self.comma = true;
-            self.surely_decimal |=
-                decimals.len() != 3 || complete.len() > 3 || complete.starts_with('0');
-        } else {
-            self.ungrouped |= value.abs() >= 100.0 && !is_clock_time(field);
+        self.comma |= field.contains(',');
+        if !is_clock_time(field) {
+            self.note_groups(column, field, value);
         }
         if self.point && self.comma {
             Err(NotANumber::Mixed(field.to_owned()))
@@ -41,10 +46,45 @@ impl Decimals {
         }
     }
 
-    /// Whether commas may also be separators of thousands.
-    pub fn are_ambiguous(&self) -> bool {
-        self.comma && !self.surely_decimal && self.ungrouped
+    fn note_groups(&mut self, column: usize, field: &str, value: f64) {
+        if self.columns.len() <= column {
+            self.columns.resize(column + 1, Grouping::default());
+        }
+        let groups = &mut self.columns[column];
+        if let Some((complete, decimals)) = field.split_once(['.', ',']) {
+            let complete = complete.trim_start_matches(['+', '-']);
+            let decimal = decimals.len() != 3 || complete.len() > 3 || complete.starts_with('0');
+            self.surely_decimal |= decimal || complete.is_empty();
+            groups.grouped = true;
+        } else {
+            self.surely_decimal |= value.abs() >= 1000.0;
+            groups.hundreds |= value.abs() >= 100.0;
+        }
     }
+
+    /// Whether points or commas may also be separators of thousands.
+    pub fn are_ambiguous(&self) -> bool {
+        let mut columns = self.columns.iter();
+        !self.surely_decimal && columns.any(|column| column.grouped && column.hundreds)
+    }
+}
+
+/// Whether a field is a number whose thousands are grouped: `1,008.4`, `1.008,4` or `1,008,400`.
+fn groups_thousands(field: &str) -> bool {
+    let field = field.trim_start_matches(['+', '-']);
+    let parts: Vec<&str> = field.split(['.', ',']).collect();
+    let [first, groups @ .., last] = &parts[..] else {
+        return false;
+    };
+    let is_whole = !(field.contains('.') && field.contains(','));
+    let are_digits = field
+        .chars()
+        .all(|letter| letter.is_ascii_digit() || ".,".contains(letter));
+    are_digits
+        && (1..=3).contains(&first.len())
+        && !groups.is_empty()
+        && groups.iter().all(|group| group.len() == 3)
+        && (!is_whole || last.len() == 3)
 }
 
 /// Why a field is not a number.
@@ -54,6 +94,8 @@ pub(super) enum NotANumber {
     Empty,
     #[error("\"{0}\" is not a number")]
     Text(String),
+    #[error("\"{0}\" is not a number: save the table without separators of thousands")]
+    Grouped(String),
     #[error("{0} is not a finite number")]
     Infinite(String),
     #[error("\"{0}\": decimal points and decimal commas are mixed in this file")]

@@ -7,7 +7,6 @@ use std::sync::Arc;
 
 use super::Faults;
 use super::columns::{Above, Column, unquoted};
-use super::converted::TableText;
 use super::decimals::{Decimals, NotANumber, is_clock_time, is_hole};
 use super::encoding::TextEncoding;
 use super::file::MOST_OF_DATA;
@@ -82,7 +81,7 @@ impl Table {
             Error::input(format!("{} {}", file.display(), fault.message), fault.hint)
         })?;
         if let Some(tables) = tables {
-            return Self::first(&file, &tables, part);
+            return Self::only(&file, &tables, part);
         }
         let (text, encoding) = text_of_data(&file, &bytes, wanted, hint)?;
         let table = Self::parse_part(&path.display().to_string(), &text, part)?;
@@ -90,32 +89,6 @@ impl Table {
             encoding: Some(encoding),
             ..table
         })
-    }
-
-    /// The first of several texts that is a table.
-    fn first(file: &Path, texts: &[TableText], part: TextPart) -> Result<Self, Error> {
-        let read = |text: &TableText| {
-            let file = file.display();
-            let name = match &text.name {
-                Some(name) => format!("{file}#{name}"),
-                None => file.to_string(),
-            };
-            let table = Self::separated(&name, text.text.clone(), b'\t', part)?;
-            Ok(Self {
-                part: text.name.clone(),
-                is_text: false,
-                ..table
-            })
-        };
-        let mut refused = None;
-        for text in texts {
-            match read(text) {
-                Ok(table) => return Ok(table),
-                Err(fault) => refused = refused.or(Some(fault)),
-            }
-        }
-        let empty = || Error::input(format!("{} has no table", file.display()), Self::HINT);
-        Err(refused.unwrap_or_else(empty))
     }
 
     /// Reads a text.
@@ -213,8 +186,8 @@ impl Table {
             line += 1;
         }
         if decimals.are_ambiguous() {
-            let hint = "write 1050 or 1.050 instead of 1,050, whichever is meant";
-            let message = "commas may be decimal commas or group thousands in this file";
+            let hint = "write 1050 or 1.0500 instead of 1,050 or 1.050, whichever is meant";
+            let message = "points or commas may mark decimals or group thousands in this file";
             faults.push(self.fault(0..0, message, hint));
         }
     }
@@ -268,7 +241,7 @@ impl Table {
 
     /// The number in a field of the next row, NaN where it is none; a column of clock times is in s.
     fn read_field(&mut self, column: usize, field: &str, decimals: &mut Decimals) -> f64 {
-        match decimals.read(field) {
+        match decimals.read(column, field) {
             Ok(value) => {
                 if is_clock_time(field) {
                     self.columns[column].unit = Some("s".to_owned());

@@ -77,7 +77,7 @@ fn arrays_of_numpy_and_matlab_are_tables() {
 }
 
 #[test]
-fn the_first_sheet_that_is_a_table_is_read_and_named() {
+fn the_only_sheet_with_rows_enough_is_read_and_named() {
     let table = read("three_sheets.xlsx");
     assert!(
         table

@@ -1,14 +1,56 @@
-//! Tables of which only some lines are read: what stands in the others is no fault.
+//! Tables that are a part of a file: one of its sheets, or some of its lines, where what stands in the others is no fault.
 
 use std::ops::Range;
 use std::path::Path;
 
 use super::super::columns::Column;
+use super::super::converted::TableText;
 use super::super::lines::{blanks_to_tabs, delimiter, plain_text};
 use super::{Table, TextPart};
 use crate::error::Error;
 
+/// Rows from which on a text is surely a table, and not a few values that belong to one.
+const FEWEST_ROWS: usize = 3;
+
 impl Table {
+    /// The one of several texts that is a table.
+    pub(super) fn only(file: &Path, texts: &[TableText], part: TextPart) -> Result<Self, Error> {
+        let read = |text: &TableText| {
+            let file = file.display();
+            let name = match &text.name {
+                Some(name) => format!("{file}#{name}"),
+                None => file.to_string(),
+            };
+            let table = Self::separated(&name, text.text.clone(), b'\t', part)?;
+            Ok(Self {
+                part: text.name.clone(),
+                is_text: false,
+                ..table
+            })
+        };
+        let (mut tables, mut refused) = (Vec::new(), None);
+        for text in texts {
+            match read(text) {
+                Ok(table) => tables.push(table),
+                Err(fault) => refused = refused.or(Some(fault)),
+            }
+        }
+        if tables.iter().any(|table| table.rows.len() >= FEWEST_ROWS) {
+            tables.retain(|table| table.rows.len() >= FEWEST_ROWS);
+        }
+        if tables.len() > 1 {
+            let names = tables.iter().filter_map(|table| table.part.as_deref());
+            let names: Vec<&str> = names.collect();
+            let file = file.display();
+            let message = format!("{file} has several tables: `{}`", names.join("`, `"));
+            let hint = format!("name one: {file}#{}", names[0]);
+            return Err(Error::input(message, hint));
+        }
+        let empty = || Error::input(format!("{} has no table", file.display()), Self::HINT);
+        let table = tables.pop();
+        table.ok_or_else(|| refused.unwrap_or_else(empty))
+    }
+
     /// Reads the rows of a file that begin in a part of its text; the others keep their places, without numbers and without faults.
     ///
     /// # Errors

@@ -1,4 +1,5 @@
 use super::*;
+use crate::document::converted::TableText;
 use crate::document::head::pairs;
 
 fn rows(text: &str) -> Vec<Vec<f64>> {
@@ -65,6 +66,7 @@ fn bad_tables_are_refused_with_line_and_reason() {
             "a.csv:2: 4 fields, but the header has 2 columns",
         ),
         ("a\tb\n1,050\t2\n950\t3\n", "group thousands"),
+        ("a\tb\n950\t2\n1.050\t3\n", "group thousands"),
     ] {
         let actual = refusal(text);
         assert!(actual.contains(reason), "{text:?}: {actual}");
@@ -84,7 +86,9 @@ fn fields_that_are_no_numbers_are_told_by_their_column() {
         ("a,b\n1,0\n2,0.1 MPa\n", 3, "\"0.1 MPa\" is not a number"),
         ("a,b\n1,0\n2,\n", 3, "a field is empty"),
         ("a;b\n1,5;0,2\n1,6;0.3\n", 3, "are mixed in this file"),
-        ("a;b\n1,0;1.000,5\n", 2, "is not a number"),
+        ("a;b\n1,0;1.000,5\n", 2, "without separators of thousands"),
+        ("a;b\n1.5;1,000.5\n", 2, "without separators of thousands"),
+        ("a;b\n1.5;12.05.2024\n", 2, "is not a number"),
     ] {
         let table = Table::parse("a.csv", text).unwrap();
         let actual = table.check_numbers([1], "").unwrap_err().to_string();
@@ -111,5 +115,36 @@ fn remarks_old_line_ends_and_citations_are_read() {
         faults[0]
             .to_string()
             .contains("a.csv:2: the test is stated twice")
+    );
+}
+
+/// A whole number in another column, or one mark that surely marks decimals, does not make others doubtful.
+#[test]
+fn decimals_are_told_from_thousands_column_by_column() {
+    for text in [
+        "n\tb\n150\t1.050\n151\t1.055\n",
+        "a\tb\n950\t0.5\n1.050\t0.6\n",
+        "a\tb\n950\t2\n1050\t2\n1.050\t3\n",
+        "n;b\n150;1,050\n151;1,055\n",
+    ] {
+        assert!(Table::parse("a.csv", text).is_ok(), "{text:?}");
+    }
+}
+
+#[test]
+fn one_of_several_tables_of_a_file_is_asked_for() {
+    let sheet = |name: &str, rows: &str| TableText {
+        name: Some(name.to_owned()),
+        text: format!("a\tb\n{rows}"),
+    };
+    let (few, enough) = ("1\t2\n2\t3\n", "1\t2\n2\t3\n3\t4\n");
+    let read = |sheets: &[TableText]| Table::only(Path::new("a.xlsx"), sheets, WHOLE);
+    let one = read(&[sheet("results", few), sheet("first", enough)]).unwrap();
+    assert_eq!(one.part.as_deref(), Some("first"));
+    let several = [sheet("first", enough), sheet("second", enough)];
+    let asked = read(&several).unwrap_err().to_string();
+    assert!(
+        asked.contains("`first`, `second`") && asked.contains("a.xlsx#first"),
+        "{asked}"
     );
 }
