@@ -13,7 +13,7 @@ use gelbench::identification::{
 use gelbench::material::Card;
 use gelbench::material::registry::Law;
 use gelbench_base::error::suggestion;
-use gelbench_calibration::calibration::KEYS;
+use gelbench_calibration::calibration::{KEYS, refuse_repeated};
 use gelbench_report::results::{
     fit_json, fit_picture, identification_json, identification_picture,
 };
@@ -62,6 +62,7 @@ pub fn fit(
         let tables = tests.iter();
         let read = tables.map(|(name, table)| TestData::parse(name, table, &reading));
         let tests_read = read.collect::<Result<Vec<_>, Error>>()?;
+        refuse_repeated(&tests_read)?;
         let settings = FitSettings {
             weighting: chosen("weighting", weighting, &Weighting::NAMES)?,
             bounds,

@@ -119,9 +119,10 @@ fn write(
     groups: &[NamedGroup],
 ) -> Result<(), Error> {
     let inputs: Vec<&Path> = files.iter().map(PathBuf::as_path).collect();
-    let mut results = interrupt::guarded(|| {
-        ResultFolder::open(folder, &format!("materials group {name}"), &inputs)
-    })?;
+    let mut results = interrupt::guarded(
+        || ResultFolder::open(folder, &format!("materials group {name}"), &inputs),
+        |folder| folder,
+    )?;
     results.add(&format!("{name}.csv"), group_table(groups).as_bytes())?;
     for entry in groups {
         let stem = format!("{name}-{}", entry.name);

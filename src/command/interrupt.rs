@@ -39,15 +39,19 @@ pub fn guard(folder: &ResultFolder) {
     *unfinished = Some(folder.unfinished());
 }
 
-/// Opens a folder whose unfinished results an interrupt removes; one that comes meanwhile waits until it is open.
+/// Opens results whose unfinished files an interrupt removes, in the folder that `folder` names; an interrupt that comes meanwhile waits
+/// until they are open.
 ///
 /// # Errors
-/// Those of opening it.
-pub fn guarded(open: impl FnOnce() -> Result<ResultFolder, Error>) -> Result<ResultFolder, Error> {
+/// Those of opening them.
+pub fn guarded<T>(
+    open: impl FnOnce() -> Result<T, Error>,
+    folder: impl FnOnce(&T) -> &ResultFolder,
+) -> Result<T, Error> {
     let mut unfinished = UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner);
-    let folder = open()?;
-    *unfinished = Some(folder.unfinished());
-    Ok(folder)
+    let opened = open()?;
+    *unfinished = Some(folder(&opened).unfinished());
+    Ok(opened)
 }
 
 /// The identity of a command: its statement, the contents of all files that it has read, and the program itself.

@@ -106,8 +106,8 @@ pub fn run(options: Options) -> Outcome {
         .chain(others.into_iter().flatten())
         .collect();
     let program = std::env::current_exe().ok();
-    let mut folder = SweepFolder::open(&sweep, share, &root, &inputs, program.as_deref())?;
-    interrupt::guard(folder.results());
+    let open = || SweepFolder::open(&sweep, share, &root, &inputs, program.as_deref());
+    let mut folder = interrupt::guarded(open, SweepFolder::results)?;
     warn(folder.replaces().as_slice());
     let progress = Progress::of(folder.count() as u64);
     progress.report("studies of all runs, read and checked before the first");

@@ -8,7 +8,7 @@ use super::terminal::{together, warn};
 use gelbench_base::document::file::MOST_OF_A_STUDY;
 use gelbench_base::document::{Statements, read_text};
 use gelbench_base::error::{Diagnostic, Error};
-use gelbench_calibration::calibration::{self, Observation, TestData};
+use gelbench_calibration::calibration::{self, TestData};
 
 const MOUNTING: &str = "Planar biaxial tests";
 
@@ -231,32 +231,7 @@ fn with_preset(name: &str, stated: Statements) -> Result<Statements, Error> {
 /// [`Error::Input`] with the faults of all files, and where a test is given twice: it would count as two.
 pub fn read_tests(files: &[PathBuf], reading: &Statements) -> Result<Vec<TestData>, Error> {
     let tests = together(files.iter().map(|path| TestData::read(path, reading)))?;
-    for (index, test) in tests.iter().enumerate() {
-        let first = tests[..index].iter().find(|first| are_same(first, test));
-        if let Some(first) = first {
-            let (name, first) = (&test.name, &first.name);
-            let message = if name == first {
-                format!("{name} is given twice")
-            } else {
-                format!("{name} has the same rows as {first}")
-            };
-            let hint = "each file counts as a measurement of its own: give each test once";
-            return Err(Error::input(message, hint));
-        }
-    }
+    calibration::refuse_repeated(&tests)?;
     tests.iter().for_each(|test| warn(&test.warnings));
     Ok(tests)
-}
-
-/// Whether two tests are one, whatever their files are called: no measurement is repeated to the last digit.
-fn are_same(one: &TestData, other: &TestData) -> bool {
-    let row = |one: &Observation| {
-        let [first, second] = one.strains;
-        ([first, second, one.stress].map(f64::to_bits), one.axis)
-    };
-    let times = |data: &TestData| data.known_times().ok().flatten().map(<[f64]>::to_vec);
-    let rows = one.observations.iter().map(row);
-    one.test == other.test
-        && rows.eq(other.observations.iter().map(row))
-        && times(one) == times(other)
 }

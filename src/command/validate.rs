@@ -28,8 +28,10 @@ pub fn run(names: &[String], quick: bool, folder: Option<PathBuf>) -> Outcome {
     let folder = &folder.unwrap_or_else(usual);
     let statement = format!("validate {names:?} {quick}");
     let identity = interrupt::identity(&statement);
-    let mut results =
-        interrupt::guarded(|| ResultFolder::resume(folder, "validate", &[], &identity))?;
+    let mut results = interrupt::guarded(
+        || ResultFolder::resume(folder, "validate", &[], &identity),
+        |folder| folder,
+    )?;
     warn(validation_time(&chosen).as_slice());
     let progress = Progress::of(chosen.len() as u64);
     let mut cases = Vec::new();

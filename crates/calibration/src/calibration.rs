@@ -30,7 +30,7 @@ mod trust;
 pub use card_text::{Provenance, card_text};
 pub use data::{
     ColumnReading, Conversion, FoundZero, KEYS, Mounted, Mounting, Observation, PRECONDITIONED,
-    RestState, StrainColumn, TableReading, Test, TestData, Times,
+    RestState, StrainColumn, TableReading, Test, TestData, Times, refuse_repeated,
 };
 pub use fit::fit;
 pub use fitted::{Fit, FurtherProtocol, MountedFit, Protocols, Relaxed};

@@ -99,8 +99,8 @@ pub fn estimate(
 }
 
 /// The nearest field and the residuals of its markers, without verdict, intervals and stresses: the start of another computation. Edges without
-/// a stated condition are loaded; with `may_free_edges` the data decide which of them are free, which takes many times longer. The displacement
-/// is empty where gross errors end the estimate.
+/// a stated condition are loaded; with `may_free_edges`, or where equilibrium is not exact, the data decide which of them are free, which takes
+/// many times longer. The displacement is empty where gross errors end the estimate.
 ///
 /// # Errors
 /// As [`estimate`], and where measured forces leave no solution.

@@ -10,7 +10,7 @@ use gelbench::material::curve::Mode;
 use gelbench::material::registry::Law;
 use gelbench::material::stability::stable_range;
 use gelbench::results::Drawing;
-use gelbench_calibration::calibration::StableRange;
+use gelbench_calibration::calibration::{StableRange, refuse_repeated};
 use gelbench_report::results::{LineChart, fit_picture, tests_chart};
 
 use super::background::Worker;
@@ -141,8 +141,10 @@ fn fit(question: &FitQuestion, tests: &[TestData]) -> Result<Ranking, Error> {
 /// [`Error::Input`] with what is wrong, or what must be stated because a file does not.
 pub fn read(files: &[TestFile], reading: &Statements) -> Result<Vec<TestData>, Error> {
     let each = files.iter();
-    each.map(|file| TestData::parse(&file.name, &file.text, reading))
-        .collect()
+    let tests = each.map(|file| TestData::parse(&file.name, &file.text, reading));
+    let tests = tests.collect::<Result<Vec<_>, _>>()?;
+    refuse_repeated(&tests)?;
+    Ok(tests)
 }
 
 fn fitted(fit: &Fit, tests: &[TestData], provenance: &Provenance) -> Fitted {

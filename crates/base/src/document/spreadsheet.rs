@@ -14,8 +14,8 @@ use crate::error::suggestion;
 /// What to do with a damaged workbook.
 const AGAIN: &str = "save it again, or save the sheet as .csv";
 
-/// Rows of the largest sheet that there can be.
-const MOST_ROWS: usize = 1 << 20;
+/// Rows and columns of the largest sheet that there can be.
+const LARGEST: [usize; 2] = [1 << 20, 1 << 14];
 
 /// The sheets in their order, or the one with a name.
 ///
@@ -49,21 +49,20 @@ pub(super) fn tables(bytes: &[u8], part: Option<&str>) -> Result<Vec<TableText>,
 /// Unpacks all parts once: each is as large as the archive states and has room, and so have the texts whose number a part states, for
 /// which room is made before they are read.
 fn check(archive: &mut Archive) -> Result<(), Unconvertible> {
-    const COUNT: &[u8] = b"uniqueCount=\"";
-    let names = archive.names().into_iter();
-    for name in names.filter(|name| name.ends_with(".xml") || name.ends_with(".rels")) {
+    for name in archive.names() {
         let part = archive.read(&name)?;
-        let stated = part.windows(COUNT.len()).position(|text| text == COUNT);
-        let Some(begin) = stated.map(|position| position + COUNT.len()) else {
-            continue;
-        };
-        let digits = part[begin..]
-            .iter()
-            .take_while(|digit| digit.is_ascii_digit());
-        let count = digits.fold(0.0, |count, digit| 10.0 * count + f64::from(digit - b'0'));
-        if count > part.len() as f64 {
-            let message = format!("is a damaged workbook: {name} cannot hold {count} texts");
-            return Err(Unconvertible::new(message, AGAIN));
+        let text = String::from_utf8_lossy(&part);
+        for (_, after) in text
+            .match_indices("uniqueCount")
+            .map(|(at, key)| text.split_at(at + key.len()))
+        {
+            let value = after.trim_start_matches(|letter: char| !letter.is_ascii_digit());
+            let digits = value.bytes().take_while(u8::is_ascii_digit);
+            let count = digits.fold(0.0, |count, digit| 10.0 * count + f64::from(digit - b'0'));
+            if count > part.len() as f64 {
+                let message = format!("is a damaged workbook: {name} cannot hold {count} texts");
+                return Err(Unconvertible::new(message, AGAIN));
+            }
         }
     }
     Ok(())
@@ -94,8 +93,11 @@ fn text(workbook: &mut Xlsx<Cursor<&[u8]>>, sheet: &str) -> Result<String, Uncon
         if !text.trim().is_empty() {
             let (row, column) = cell.get_position();
             let (row, column) = (row as usize, column as usize);
-            if row >= MOST_ROWS {
+            if row >= LARGEST[0] {
                 return Err(damaged(XlsxError::RowNumberOverflow));
+            }
+            if column >= LARGEST[1] {
+                return Err(damaged(XlsxError::ColumnNumberOverflow));
             }
             cells.push(Filled { row, column, text });
         }

@@ -265,6 +265,15 @@ impl CurveResiduals<'_> {
 }
 
 impl CurveNoise {
+    /// The same where something that was taken as known moves the estimates by `moved` for its standard error.
+    #[must_use]
+    pub fn with_moved(mut self, moved: &DVector<f64>) -> Self {
+        for part in &mut self.parts {
+            part.covariance += moved * moved.transpose();
+        }
+        self
+    }
+
     /// Half the width of the 95 % interval of aᵀβ.
     pub fn half_width(&self, a: &DVector<f64>) -> f64 {
         const HALVINGS: usize = 40;

@@ -36,7 +36,7 @@ pub const AT_THE_END: NewtonSettings = NewtonSettings {
 /// Its parameters p are those of the edges' motion, then those of the law, then those of the forces on the interior.
 pub struct Equations<'a> {
     pub task: Task<'a>,
-    /// The edges with their conditions.
+    /// The edges with their conditions; once the data have decided, with their probabilities and as edges of the body.
     pub edges: Vec<Edge>,
     pub motion: EdgeMotion,
     /// The bodies that hold the sheet.

@@ -15,7 +15,7 @@
 //! picture at rest is common to all frames.
 //!
 //! The discretisation error is the effect that the equilibria on cells half as large, at the same motions of the edges, have on the right-hand
-//! sides: e = S⁻¹ Σ (−AᵀWHd/v − Gᵀd_F/σ), reduced as tₖ is ([`MeshError`](super::search) has d, G and d_F of one frame). ± 1.96
+//! sides: e = S⁻¹ Σ (−AᵀWHd/v − Gᵀd_F/σ), reduced as tₖ is ([`MeshError`](super::search::MeshError) has d, G and d_F of one frame). ± 1.96
 //! e is added to the intervals as if it were noise; it is alike in all frames, so that more frames do not reduce it.
 //!
 //! The effects of a standard deviation of the load cell's gain, and of one of the pictures' scale, on the right-hand

@@ -4,7 +4,7 @@ use super::grey::{GreyImage, range};
 use super::noise::Noise;
 use crate::error::Diagnostic;
 
-/// Standard deviations of the noise beyond which a difference of grey values is none of noise.
+/// Standard deviations beyond which noise does not explain a difference of grey values.
 const FAR: f32 = 6.0;
 
 /// Pixels that stand alone in both images with the same value, as a sensor's dead or hot pixels do: farther from the median of their eight

@@ -64,7 +64,7 @@ impl Match {
         }
     }
 
-    /// What a user gets of it.
+    /// The match as results give it: position, displacement, gradient, covariance and similarity of the point.
     pub fn tracked(&self, point: [usize; 2]) -> Tracked {
         Tracked {
             position: point.map(|x| x as f64),

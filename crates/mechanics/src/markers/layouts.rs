@@ -104,7 +104,7 @@ const DICE_STEREO: Layout = Layout {
     name: "DICe, stereo",
     positions: [&["model_coordinates_x"], &["model_coordinates_y"]],
     displacements: [&["model_displacement_x"], &["model_displacement_y"]],
-    // SIGMA is in pixels, not in the calibration's unit.
+    // SIGMA is in pixels, not in the calibration's unit: it only shows which points are lost.
     lost: &["sigma"],
     // The same in pixels of one camera.
     harmless: &[
@@ -160,7 +160,7 @@ const VIC_3D: Layout = Layout {
     positions: [&["=X"], &["=Y"]],
     displacements: [&["=U"], &["=V"]],
     out_of_plane: [&["=Z"], &["=W"]],
-    // It is in pixels, not in the calibration's unit.
+    // `sigma` is in pixels, not in the calibration's unit: it only shows which points are lost.
     lost: &["sigma"],
     harmless: &[
         "=x", "=y", "=u", "=v", "sigma_x", "sigma_y", "sigma_z", "index",

@@ -69,9 +69,10 @@ pub fn diagnose(
         let position = place_of(&mode);
         return SolveFault::UnstableAtRest { position };
     }
-    let Some((_, mode)) = newton.tangent.softest_mode(&*potential, &u) else {
+    let Some(softest) = newton.tangent.softest_mode(&*potential, &u) else {
         return fault;
     };
+    let mode = softest.displacement;
     let position = place_of(&mode);
     if !is_driven(newton, loading, stage, &u, &mode) {
         return SolveFault::Buckling { position };
@@ -89,9 +90,8 @@ fn unstable_at_rest(
 ) -> Option<Vec<f64>> {
     let potential = loading.potential(0.0, history);
     let rest = vec![0.0; potential.unknowns()];
-    let (least, mode) = newton.tangent.softest_mode(&*potential, &rest)?;
-    let stiffest = newton.tangent.factorised_stiffest().unwrap_or(0.0);
-    (least <= ROUNDED * stiffest).then_some(mode)
+    let softest = newton.tangent.softest_mode(&*potential, &rest)?;
+    (softest.stiffness <= ROUNDED * softest.stiffest).then_some(softest.displacement)
 }
 
 /// A state at or near the last equilibrium in which a direction has lost its stiffness.
@@ -111,7 +111,7 @@ fn critical(
     if let Some(u) = indefinite.filter(near) {
         return Some(u.to_vec());
     }
-    let mut softest = |u: &[f64]| Some(newton.tangent.softest_mode(potential, u)?.0);
+    let mut softest = |u: &[f64]| Some(newton.tangent.softest_mode(potential, u)?.stiffness);
     let (now, rest) = (softest(last), softest(&vec![0.0; last.len()]));
     let soft = now
         .zip(rest)

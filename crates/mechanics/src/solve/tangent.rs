@@ -26,6 +26,16 @@ pub struct Tangent {
 /// Names an element of a potential for messages.
 pub type Describe<'a> = &'a dyn Fn(usize) -> String;
 
+/// The mode of a tangent that has the least stiffness.
+pub struct SoftestMode {
+    /// Its stiffness, that of a displacement of length one.
+    pub stiffness: f64,
+    /// The largest entry on the tangent's diagonal.
+    pub stiffest: f64,
+    /// The displacement of all unknowns, of length one.
+    pub displacement: Vec<f64>,
+}
+
 impl Tangent {
     /// Analyses the pattern of `potential` with the unknowns marked in `fixed` held.
     ///
@@ -199,11 +209,7 @@ impl Tangent {
 
     /// The direction φ of least stiffness at `u`, ‖φ‖ = 1, by inverse iteration, and φᵀ K φ; φ is zero at held
     /// unknowns. `None` where there is no tangent.
-    pub fn softest_mode(
-        &mut self,
-        potential: &dyn Potential,
-        u: &[f64],
-    ) -> Option<(f64, Vec<f64>)> {
+    pub fn softest_mode(&mut self, potential: &dyn Potential, u: &[f64]) -> Option<SoftestMode> {
         /// A shift with which a tangent that is singular but for rounding can be solved.
         const SHIFT: f64 = 1e-9;
         let (mut residual, mut stiffness) = (vec![0.0; u.len()], Vec::new());
@@ -229,7 +235,11 @@ impl Tangent {
         }
         let mode = mode?;
         let forces = self.assembly.pattern().multiply(&tangent, &mode);
-        Some((dot(&mode, &forces), spread(self.free(), &mode, u.len())))
+        Some(SoftestMode {
+            stiffness: dot(&mode, &forces),
+            stiffest: self.assembly.stiffest(&tangent),
+            displacement: spread(self.free(), &mode, u.len()),
+        })
     }
 
     /// The mode of least stiffness of the factor at hand, of length one; `None` where that is singular to working precision.

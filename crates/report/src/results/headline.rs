@@ -273,24 +273,18 @@ fn is_pressed<'a>(states: impl Iterator<Item = &'a LocalState>) -> bool {
 }
 
 impl LoadedSheet<'_> {
-    /// The sheet's smaller side in mm.
-    fn side(&self) -> f64 {
-        least_width(&self.deformed.mesh.nodes)
-    }
-
-    /// The distance from singular points in mm from which on values count, whatever the mesh.
-    fn distance(&self) -> f64 {
-        self.side() / 5.0
-    }
-
-    /// The decimals of a position that resolve a fiftieth of the smaller side.
-    fn decimals(&self) -> usize {
-        (1.6 - self.side().log10()).ceil().clamp(1.0, 9.0) as usize
+    /// The distance from singular points in mm from which on values count, whatever the mesh, and the decimals of positions: a fifth of the
+    /// sheet's least width, and those that resolve a fiftieth of it.
+    fn distance_and_decimals(&self) -> (f64, usize) {
+        let width = least_width(&self.deformed.mesh.nodes);
+        let decimals = (1.6 - width.log10()).ceil().clamp(1.0, 9.0);
+        (width / 5.0, decimals as usize)
     }
 
     /// A note on the regions that are left out when the largest values are searched; `None` where nothing is left out.
     pub fn note(&self) -> Option<String> {
-        let distance = format!("{:.1$}", self.distance(), self.decimals() + 3);
+        let (distance, decimals) = self.distance_and_decimals();
+        let distance = format!("{distance:.0$}", decimals + 3);
         let distance = distance.trim_end_matches('0').trim_end_matches('.');
         (!self.singular.is_empty()).then(|| {
             format!(
@@ -303,7 +297,7 @@ impl LoadedSheet<'_> {
     pub fn largest(&self) -> Option<Block> {
         let sheet = NodalSheet::new(self.laws, &self.deformed);
         let (mesh, states) = (&*sheet.mesh, &sheet.states);
-        let (distance, decimals) = (self.distance(), self.decimals());
+        let (distance, decimals) = self.distance_and_decimals();
         let is_regular = |node: &usize| {
             let [x, y] = mesh.nodes[*node];
             self.singular

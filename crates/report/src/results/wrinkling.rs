@@ -7,7 +7,7 @@ use nalgebra::Matrix4;
 
 use super::BESIDE_CORNERS;
 use super::sheet::Sheet;
-use super::state::{LocalState, cell_gradients, cell_states};
+use super::state::{LocalState, cell_states};
 use crate::material::sheet::{Kinematics, PlaneTensor};
 use crate::material::{HyperelasticLaw, PlaneState};
 use crate::mesh::Mesh;
@@ -64,7 +64,12 @@ impl Wrinkling {
         let compressed = stresses.iter().enumerate();
         let compressed = compressed.map(|(cell, [_, smaller])| *smaller < limits[number(cell)]);
         let compressed: Vec<bool> = compressed.collect();
-        let gradients = cell_gradients(mesh, displacement);
+        // Isotropic sheets have one tangent at rest.
+        let tangents = laws.all().iter().map(|law| {
+            let at_rest = || law.response(&Kinematics::rest()).tangent;
+            law.is_isotropic().then(at_rest)
+        });
+        let tangents: Vec<Option<Matrix4<f64>>> = tangents.collect();
         let parts = Deformed::new(mesh, displacement, states).parts(&compressed);
         let mut worst = [0.0, f64::INFINITY];
         let mut exceeded = vec![false; states.len()];
@@ -72,8 +77,11 @@ impl Wrinkling {
             let Some(part) = part else { continue };
             let [_, smaller] = stresses[cell];
             let thickness = sheet.thickness * states[cell].stretches[2];
-            let waves = direction_at_rest(&gradients[cell], states[cell].smaller_direction());
-            let bending = Bending::new(&tangent_at_rest(laws.of(cell), &states[cell]), waves);
+            let gradient = mesh.gradient_at(displacement, cell, mesh.shape(cell).centre());
+            let waves = direction_at_rest(&gradient, states[cell].smaller_direction());
+            let tangent = tangents[number(cell)]
+                .unwrap_or_else(|| tangent_with_fibres(laws.of(cell), &states[cell]));
+            let bending = Bending::new(&tangent, waves);
             let critical = bending.critical_stress(part, thickness).max(0.0);
             exceeded[cell] = -smaller > CERTAIN * critical;
             if -smaller * worst[1] > worst[0] * critical {
@@ -90,7 +98,7 @@ impl Wrinkling {
 }
 
 /// ∂P/∂F in MPa at a millionth of the strain of a state: at rest, but with fibres in the tension or compression that they have.
-fn tangent_at_rest(law: &dyn HyperelasticLaw, state: &LocalState) -> Matrix4<f64> {
+fn tangent_with_fibres(law: &dyn HyperelasticLaw, state: &LocalState) -> Matrix4<f64> {
     let [e11, e22, _, e12] = state.green_lagrange.map(|strain| 1e-6 * strain);
     let kinematics = Kinematics::new(&PlaneTensor::new(e11, e12, e12, e22));
     law.response(&kinematics.unwrap_or(Kinematics::rest()))

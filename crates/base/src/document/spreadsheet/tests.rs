@@ -66,24 +66,45 @@ fn numbers_are_those_of_the_file() {
 
 #[test]
 fn sheets_that_no_program_writes_are_refused() {
-    for rows in [
-        r#"<row><c r="A1048577"><v>1</v></c></row>"#,
-        r#"<row><c r="ÄA1"><v>1</v></c></row>"#,
-        r#"<row><c r="A1" t="s"><v>2</v></c></row>"#,
+    for (rows, reason) in [
+        (r#"<row><c r="A1048577"><v>1</v></c></row>"#, "row number"),
+        (r#"<row><c r="ZZZZ1"><v>1</v></c></row>"#, "column number"),
+        (r#"<row><c r="ÄA1"><v>1</v></c></row>"#, "alphanumeric"),
+        (r#"<row><c r="A1" t="s"><v>2</v></c></row>"#, "damaged"),
     ] {
-        let refused = sheet(rows).is_err_and(|fault| fault.message.contains("damaged"));
-        assert!(refused, "{rows}");
+        let refused = sheet(rows).map_err(|fault| fault.message.to_lowercase());
+        assert!(
+            refused
+                .as_ref()
+                .is_err_and(|message| message.contains(reason)),
+            "{refused:?}"
+        );
     }
     // Two cells may span a sheet whose empty fields have no room.
     let corners = r#"<row r="1"><c r="A1"><v>1</v></c></row><row r="1048576"><c r="XFD1048576"><v>1</v></c></row>"#;
     assert!(sheet(corners).is_ok());
 }
 
+#[test]
+fn elements_may_have_prefixes() {
+    let rows = r#"<x:row r="1"><x:c r="A1"><x:v>0.5</x:v></x:c></x:row>"#;
+    assert_eq!(sheet(rows).unwrap(), "0.5\n");
+}
+
 /// So many texts that there is no room for them, in a part of a few bytes.
 #[test]
 fn a_number_of_texts_that_cannot_be_is_refused() {
-    let texts = r#"<sst count="1" uniqueCount="999999999999"><si><t>a</t></si></sst>"#;
-    let bytes = stored(&[("xl/sharedStrings.xml", texts)]);
-    let refused = tables(&bytes, None).unwrap_err();
-    assert!(refused.message.contains("999999999999"), "{refused:?}");
+    for (name, texts) in [
+        (
+            "xl/sharedStrings.xml",
+            r#"<sst count="1" uniqueCount="999999999999"><si/></sst>"#,
+        ),
+        (
+            "xl/sharedStrings.XML",
+            r#"<!-- uniqueCount="1" --><sst uniqueCount = '999999999999'/>"#,
+        ),
+    ] {
+        let refused = tables(&stored(&[(name, texts)]), None).unwrap_err();
+        assert!(refused.message.contains("999999999999"), "{refused:?}");
+    }
 }

@@ -31,7 +31,12 @@ impl Table {
             .trim();
         let names = names_in_remark(remark, self.columns.len());
         if let Some(names) = names.filter(|names| accepted(names)) {
-            self.columns = names.into_iter().map(Column::new).collect();
+            // Columns without a name have a unit only of themselves: times of a clock are in s, whatever their name states.
+            for (column, name) in self.columns.iter_mut().zip(names) {
+                let mut named = Column::new(name);
+                named.unit = column.unit.take().or(named.unit.take());
+                *column = named;
+            }
             self.columns_place = position;
         }
     }

@@ -44,6 +44,7 @@ fn times_of_a_clock_are_in_seconds() {
     for text in [
         "Time,Load [N]\n00:00:01.050,1\n01:01:01.5,950\n",
         "Time [hh:mm:ss];Load [N]\n00:00:01,050;1\n1:01:01,5;950\n",
+        "# Time [h], Load [N]\n00:00:01.050,1\n01:01:01.5,950\n",
     ] {
         let table = Table::parse("a.csv", text).unwrap();
         assert_eq!(table.columns[0].unit.as_deref(), Some("s"), "{text}");

@@ -134,7 +134,7 @@ pub fn stresses(
 }
 
 /// The length of the specimen at rest along an axis in mm: `length`, or `width` along the second axis, where it is stated; otherwise the size
-/// in the first row less the displacement there.
+/// in the first row that has one less the displacement there.
 pub fn length(head: &Head, roles: &[Role], axis: usize) -> Faulty<f64> {
     let key = ["length", "width"][axis];
     let stated = head.quantity(key, Dimension::Length)?;
@@ -142,19 +142,26 @@ pub fn length(head: &Head, roles: &[Role], axis: usize) -> Faulty<f64> {
     size.ok_or_else(|| head.missing(key, "2 mm"))
 }
 
-/// The size of the specimen along an axis before its first displacement in mm, where columns state both.
+/// The size of the specimen along an axis in mm less its displacement, where columns state both: in the first row that has them.
 fn size_at_rest(head: &Head, roles: &[Role], axis: usize) -> Option<f64> {
-    let first = |kind: Kind, measure: Option<&str>| {
+    let column = |kind: Kind, measure: Option<&str>| {
         let mut columns = of_kind(roles, kind);
         let (column, _) =
             columns.find(|(_, role)| role.axis() == axis && role.measure == measure)?;
-        let column_head = &head.table.columns[column];
-        let factor = units::factor(column_head.unit.as_deref()?, Dimension::Length).ok()?;
-        let mut rows = head.table.rows.iter().map(|(row, _)| row[column]);
-        Some(factor * rows.find(|value| value.is_finite())?)
+        let unit = head.table.columns[column].unit.as_deref()?;
+        let factor = units::factor(unit, Dimension::Length).ok()?;
+        Some((column, factor))
     };
-    let size = first(Kind::Size, None)? - first(Kind::Strain, Some(DISPLACEMENT)).unwrap_or(0.0);
-    Some(size).filter(|size| *size > 0.0)
+    let (size, displacement) = (
+        column(Kind::Size, None)?,
+        column(Kind::Strain, Some(DISPLACEMENT)),
+    );
+    let rows = head.table.rows.iter().map(|(row, _)| {
+        let value = |(column, factor): (usize, f64)| factor * row[column];
+        value(size) - displacement.map_or(0.0, value)
+    });
+    let mut known = rows.filter(|size| size.is_finite());
+    known.next().filter(|size| *size > 0.0)
 }
 
 /// The cross-section of the specimen in mm²: the stated one, or width times thickness; of a specimen that is pulled along two axes, the

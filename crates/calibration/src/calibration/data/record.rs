@@ -4,8 +4,7 @@ use std::ops::Range;
 
 use super::cycles::{Branches, CYCLE, Cycle};
 use super::row_choice::ROWS;
-use super::test_data::FoundZero;
-use super::zero::Beginning;
+use super::zero::{Beginning, FoundZero};
 use crate::document::{Faulty, Head};
 use crate::units::{self, Dimension};
 
@@ -175,7 +174,7 @@ impl Part {
             Zero::Force(f) => {
                 let position = either(y, f / area);
                 self.take_stated(head, machine, [x, y], position)?;
-                self.found_zero = Some(FoundZero::Strain { length });
+                self.found_zero = Some(FoundZero::strain(length));
             }
         }
         // Rows before the zero are not fitted.
@@ -222,9 +221,7 @@ impl Part {
             let newton = machine.area * stress;
             format!("{newton:.4} N, {percent:.2} % of the largest force,")
         };
-        let strain = FoundZero::Strain {
-            length: machine.length,
-        };
+        let strain = FoundZero::strain(machine.length);
         let done = match beginning {
             Beginning::Clean => return,
             Beginning::Elsewhere(zero) => {
@@ -238,9 +235,13 @@ impl Part {
                 zero,
                 error,
                 offset,
+                offset_error,
             } => {
                 (self.zero, self.offset) = (zero, offset);
-                self.found_zero = Some(strain);
+                self.found_zero = Some(FoundZero::Strain {
+                    length: machine.length,
+                    offset_error,
+                });
                 format!(
                     "slack up to {:.4} ± {:.4} mm is removed: this is the zero of displacement, and the reading before it, {:.4} N, that of force",
                     mm(zero),

@@ -2,6 +2,7 @@
 
 use super::mounting::Mounted;
 use super::table_reading::TableReading;
+use super::zero::FoundZero;
 use crate::document::{Statements, name_of};
 use crate::error::{Diagnostic, Error};
 use crate::material::HyperelasticLaw;
@@ -138,21 +139,6 @@ pub enum Times {
     Unknown(Box<Diagnostic>),
 }
 
-/// A zero that was found at the beginning of a machine's record: it is uncertain, so that it is determined again with the law.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum FoundZero {
-    /// The zero of strain, on a specimen of this length in mm.
-    Strain {
-        /// The length.
-        length: f64,
-    },
-    /// The zero of stress, on a specimen of this cross-section in mm².
-    Stress {
-        /// The cross-section.
-        area: f64,
-    },
-}
-
 /// The data of one test.
 #[derive(Clone, Debug)]
 #[non_exhaustive]
@@ -218,6 +204,14 @@ impl TestData {
     pub(in crate::calibration) fn reached(&self, axis: usize) -> f64 {
         let strains = self.observations.iter().map(|one| one.strains[axis]);
         strains.fold(0.0, f64::max)
+    }
+
+    /// The standard error in MPa of a stress that was subtracted from all observations.
+    pub(in crate::calibration) fn offset_error(&self) -> f64 {
+        match self.found_zero {
+            Some(FoundZero::Strain { offset_error, .. }) => offset_error,
+            _ => 0.0,
+        }
     }
 
     /// The times of the observations in s, if the file has any.

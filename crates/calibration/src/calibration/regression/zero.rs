@@ -149,7 +149,7 @@ impl MovedZero {
     fn remark_on_record(&self, test: &TestData) -> Option<String> {
         let (by, error) = (self.by.value, self.by.standard_error);
         let moved = match test.found_zero? {
-            FoundZero::Strain { length } => {
+            FoundZero::Strain { length, .. } => {
                 let last = test.observations.last();
                 let pulls = last.is_some_and(|one| test.drawn_strain(one) > 0.0);
                 let side = if (by > 0.0) == pulls {

@@ -92,6 +92,8 @@ pub struct Coverage {
     /// Intervals, and those that hold the true values.
     pub intervals: usize,
     pub held: usize,
+    /// Parameters without an interval, of fits with intervals.
+    pub unknown: usize,
 }
 
 impl Coverage {
@@ -120,7 +122,8 @@ impl Coverage {
             systematic,
             vague: usize::from(!quality.is_identifiable()),
             held: held.count(),
-            intervals: known.count(),
+            intervals: known.clone().count(),
+            unknown: truth.len() - known.count(),
         }
     }
 
@@ -131,6 +134,7 @@ impl Coverage {
             vague: self.vague + other.vague,
             intervals: self.intervals + other.intervals,
             held: self.held + other.held,
+            unknown: self.unknown + other.unknown,
         }
     }
 

@@ -24,6 +24,31 @@ fn other_size(rows: &[Row], residual: &DVector<f64>, weighting: Weighting) -> DV
     modelled.map(|stress| stress.max(least))
 }
 
+/// The noise of a fit and what the stresses move that were subtracted from tests: with the weights w of a test's rows
+///
+/// ```text
+/// β moves by (JᵀJ)⁻¹ Jᵀ w s          s: the standard error of the test's stress without load
+/// ```
+fn with_offsets<R: Response>(
+    noise: CurveNoise,
+    design: &DMatrix<f64>,
+    misfit: &Misfit<R>,
+) -> CurveNoise {
+    let tests = misfit.response.data().iter().enumerate();
+    let subtracted = tests.filter(|(_, test)| test.offset_error() > 0.0);
+    subtracted.fold(noise, |noise, (number, test)| {
+        let weights = misfit.rows.iter().map(|row| {
+            let is_of_test = f64::from(u8::from(row.test == number));
+            is_of_test * row.weight * test.offset_error()
+        });
+        let weights = DVector::from_iterator(misfit.rows.len(), weights);
+        match least_squares::linear(design, &weights) {
+            Some(moved) => noise.with_moved(&moved),
+            None => noise,
+        }
+    })
+}
+
 /// The statistics of the residuals of a fit.
 pub struct Judged {
     /// Which values are at a bound.
@@ -62,12 +87,13 @@ impl Judged {
         let (rows, sum_of_squares) = (residual.len() as f64, residual.norm_squared());
         let jacobian = least_squares::jacobian(misfit, values, &fixed, &least);
         let free: Vec<usize> = (0..values.len()).filter(|index| !fixed[*index]).collect();
-        let judged = jacobian.and_then(|jacobian| {
+        let design = jacobian.map(|jacobian| jacobian.select_columns(&free));
+        let judged = design.as_ref().and_then(|design| {
             let law = response.law(values);
             let rounded = rounded(&response.moved_tests(values), &*law, misfit.weighting);
             let residuals = FitResiduals {
                 curves: misfit.curves(),
-                design: &jacobian.select_columns(&free),
+                design,
                 residual: &residual,
                 other_size: &other_size(&misfit.rows, &residual, misfit.weighting),
                 rounded: rounded.map(|mean| mean * rows),
@@ -75,6 +101,8 @@ impl Judged {
             residuals.judge()
         });
         let (verdict, noise): (_, Option<CurveNoise>) = judged.unzip();
+        let noise = noise.zip(design.as_ref());
+        let noise = noise.map(|(noise, design)| with_offsets(noise, design, misfit));
         let white = || rows * (sum_of_squares / rows).ln();
         let of_residuals = noise.as_ref().map_or_else(white, CurveNoise::deviance);
         // The residuals of a relative fit are those of the stresses times their weights.

@@ -1,7 +1,7 @@
 //! Edges moved to their imposed displacements without inverting the adjacent cells.
 //!
 //! On a fine mesh an edge cannot move by more than the size of a cell at once. The inner nodes are then moved too, by the tangent,
-//! Δu = −K⁻¹ K_B Δu_B, in moves as long as all cells stay admissible.
+//! Δu = −K⁻¹ K_B Δu_B, each move as large as leaves all cells admissible.
 
 use crate::error::SolveFault;
 use crate::solve::vector::moved;

@@ -181,7 +181,7 @@ fn step(tracked: &TrackedImages, frame: &Frame) -> Step {
 /// Frames in which many points are lost, and a pattern that contradicts their displacements.
 fn findings(tracked: &TrackedImages, contradicted: Option<&Diagnostic>) -> Vec<Finding> {
     const MANY: f64 = 0.1;
-    // Where neither outline nor mask is given, the specimen seldom covers less than this share of the image's points.
+    // Where neither outline nor mask is given, the specimen seldom covers less than one in so many of the image's points.
     const LEAST: usize = 4;
     let frames = &tracked.series.frames;
     let found = frames.iter().map(|frame| frame.markers.len()).max();

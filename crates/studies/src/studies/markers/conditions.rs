@@ -97,7 +97,7 @@ impl Conditions {
     /// has all edges and the series all frames.
     ///
     /// # Errors
-    /// [`Error::Input`] with those that are missing.
+    /// [`Error::Input`] with edges that are missing or named twice, or the first force that belongs to no frame.
     pub fn suit(&mut self, mesh: &Mesh, series: &MarkerSeries) -> Result<(), Error> {
         let is_kept =
             |frame: &Option<usize>| frame.is_none_or(|number| !series.at_rest.contains(&number));

@@ -24,8 +24,8 @@ use super::{figures, headline, json, report, tables};
 /// The `kind` of these results.
 pub const KIND: &str = "markers";
 
-/// The results of a correction except the [`FrameFiles`], with the study's `name` and `text`, empty where there is none, and after
-/// `seconds`.
+/// The results of a correction except the [`FrameFiles`], with the `pictures` that are wanted, the study's `name` and `text`, empty where
+/// there is none, and after `seconds`.
 pub fn results(
     pictures: &Pictures,
     field: &MarkerStudy,
