@@ -136,7 +136,6 @@ fn outcome(
         holds_mesh_error: mesh.is_some(),
         frames: frame_outcomes(descent, &course, &parts, &inverse, settings.groups, watch)?,
         common,
-        misfit: course.misfit(),
         force_scatter,
         deviance: sum(|part| part.deviance),
         effective_parameters: effective,

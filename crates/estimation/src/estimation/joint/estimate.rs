@@ -55,8 +55,6 @@ pub struct JointEstimate {
     pub frames: Vec<FrameOutcome>,
     /// The correlation ρ of the residuals in one frame and the next of its specimen.
     pub common: f64,
-    /// Σ Qₖ at its minimum.
-    pub misfit: f64,
     /// The scatter of the measured forces about those of the fields.
     pub force_scatter: ForceScatter,
     /// −2 ln L of markers and forces with the number of independent values, up to a constant of the data.
