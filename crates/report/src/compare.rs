@@ -48,8 +48,8 @@ pub fn percent_at_all_nodes(mesh: &Mesh, field: &[f64], reference: &[f64]) -> f6
 
 fn weighted_percent(mesh: &Mesh, areas: &[f64], field: &[f64], reference: &[f64]) -> f64 {
     const ROUNDING: f64 = 1e-15;
-    let [low, high] = mesh.bounding_box();
-    let size = (high[0] - low[0]).max(high[1] - low[1]) * areas.iter().sum::<f64>().sqrt();
+    let [x, y] = mesh.size();
+    let size = x.max(y) * areas.iter().sum::<f64>().sqrt();
     let rests = |field: &[f64]| field.weighted_norm(areas) <= ROUNDING * size;
     if rests(field) && rests(reference) {
         0.0

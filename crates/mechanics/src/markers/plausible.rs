@@ -3,7 +3,7 @@
 use super::frames::{Frame, Marker, MarkerSeries};
 use crate::error::{Diagnostic, Error};
 use crate::mesh::Mesh;
-use crate::mesh::geometry::{bounding_box, check_size};
+use crate::mesh::geometry::{check_size, sides};
 use crate::units::{decimals, extents, implausible_sheet};
 
 /// Displacements of more than this multiple of the specimen's size are taken to be in another unit.
@@ -23,7 +23,7 @@ const RATIOS: [f64; 6] = [10.0, 25.4, 100.0, 254.0, 1e3, 1e6];
 
 /// Checks that a sheet is thin, and not too thin: otherwise one of the lengths is in another unit.
 pub fn check_thickness(mesh: &Mesh, thickness: f64) -> Option<Diagnostic> {
-    let message = implausible_sheet(extent(mesh.nodes.iter().copied()), thickness)?;
+    let message = implausible_sheet(mesh.size(), thickness)?;
     let hint = "check the units of the thickness and of the field; --unit corrects that of the field (such as --unit mm)";
     Some(Diagnostic::warning("", message).hint(hint))
 }
@@ -37,7 +37,7 @@ pub fn check(series: &MarkerSeries, warnings: &mut Vec<Diagnostic>) -> Result<()
         ));
     }
     let markers = || series.frames.iter().flat_map(|frame| &frame.markers);
-    let extent = extent(markers().map(|marker| marker.position));
+    let extent = sides(markers().map(|marker| marker.position));
     let size = extent[0].max(extent[1]);
     let largest = markers()
         .map(|marker| marker.displacement[0].hypot(marker.displacement[1]))
@@ -116,8 +116,8 @@ pub fn place_on(mesh: &Mesh, series: &MarkerSeries) -> Result<MarkersOnMesh, Err
     };
     let (all, inside) = (count(series), count(&kept));
     let positions = || series.frames.iter().flat_map(|frame| &frame.markers);
-    let spanned = extent(positions().map(|marker| marker.position));
-    let measures = extent(mesh.nodes.iter().copied());
+    let spanned = sides(positions().map(|marker| marker.position));
+    let measures = mesh.size();
     let ratio = measures[0].hypot(measures[1]) / spanned[0].hypot(spanned[1]);
     let unit = unit_ratio(ratio);
     if 2 * inside >= all && (ratio < 8.0 || unit.is_none()) {
@@ -151,10 +151,4 @@ pub fn unit_ratio(ratio: f64) -> Option<f64> {
     let ratio = ratio.max(1.0 / ratio);
     let near = |unit: &f64| (0.8..1.3).contains(&(ratio / unit));
     RATIOS.iter().copied().find(near)
-}
-
-/// Length and width of the box around positions.
-fn extent(positions: impl Iterator<Item = [f64; 2]>) -> [f64; 2] {
-    let [low, high] = bounding_box(positions);
-    [high[0] - low[0], high[1] - low[1]]
 }

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::buckets::Buckets;
 use super::cell_shape::CellShape;
-use super::geometry::{bounding_box, distance};
+use super::geometry::{bounding_box, distance, sides};
 use super::grid::Grid;
 use super::neighbours::Neighbours;
 
@@ -228,6 +228,11 @@ impl Mesh {
     /// Lower left and upper right corner of the box around all nodes, in mm.
     pub fn bounding_box(&self) -> [[f64; 2]; 2] {
         bounding_box(self.nodes.iter().copied())
+    }
+
+    /// Sides of the box around all nodes, in mm.
+    pub fn size(&self) -> [f64; 2] {
+        sides(self.nodes.iter().copied())
     }
 
     /// Length of the diagonal of the box around all nodes, in mm.

@@ -13,6 +13,12 @@ pub fn bounding_box(points: impl IntoIterator<Item = [f64; 2]>) -> [[f64; 2]; 2]
     })
 }
 
+/// Sides of the box around points.
+pub fn sides(points: impl IntoIterator<Item = [f64; 2]>) -> [f64; 2] {
+    let [low, high] = bounding_box(points);
+    [high[0] - low[0], high[1] - low[1]]
+}
+
 /// Points whose size is not that of a specimen: length and width of the box around them in mm, and the largest coordinate.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error(
@@ -95,8 +101,8 @@ pub fn least_width(points: &[[f64; 2]]) -> f64 {
         most - least
     });
     let least = least.fold(f64::INFINITY, f64::min);
-    let [low, high] = bounding_box(points.iter().copied());
-    let along_axes = (high[0] - low[0]).min(high[1] - low[1]);
+    let [along_x, along_y] = sides(points.iter().copied());
+    let along_axes = along_x.min(along_y);
     // Of sides along the axes rounding makes no difference.
     if least < along_axes * (1.0 - 1e-9) {
         least

@@ -13,7 +13,7 @@ use std::path::Path;
 use crate::document::{Table, is_table_path};
 use crate::error::Error;
 use crate::markers::unit_ratio;
-use crate::mesh::geometry::bounding_box;
+use crate::mesh::geometry::sides;
 use crate::mesh::{ImportedField, Mesh, NodalField, import_field};
 use crate::problem::RigidMotion;
 use crate::units::{decimals, extents};
@@ -261,7 +261,7 @@ impl Sites {
     /// A remark on sites that cover only a window of the specimen; `None` where they cover all of it.
     pub fn window(&self, specimen: &Mesh) -> Option<String> {
         const NEARLY_ALL: f64 = 0.9;
-        let [extent, full] = [&self.positions, &specimen.nodes].map(|positions| sides(positions));
+        let (extent, full) = (sides(self.positions.iter().copied()), specimen.size());
         let is_window = (0..2).any(|axis| extent[axis] < NEARLY_ALL * full[axis]);
         is_window.then(|| {
             format!(
@@ -325,15 +325,9 @@ impl Sites {
     }
 }
 
-/// The sides of the box around some points.
-fn sides(positions: &[[f64; 2]]) -> [f64; 2] {
-    let [low, high] = bounding_box(positions.iter().copied());
-    [0, 1].map(|axis| high[axis] - low[axis])
-}
-
 /// Whether two meshes have boxes of one size.
 fn same_size(field: &Mesh, specimen: &Mesh) -> Result<(), Mismatch> {
-    let (actual, expected) = (sides(&field.nodes), sides(&specimen.nodes));
+    let (actual, expected) = (field.size(), specimen.size());
     if (0..2).all(|axis| (actual[axis] / expected[axis] - 1.0).abs() <= NEAR_SIZE) {
         return Ok(());
     }
@@ -343,11 +337,8 @@ fn same_size(field: &Mesh, specimen: &Mesh) -> Result<(), Mismatch> {
 /// Whether points and specimen are in one unit of length: no factor of a hundred or more lies between their sizes. A
 /// field on a small window is not a fault.
 fn near_in_size(positions: &[[f64; 2]], specimen: &Mesh) -> Result<(), Mismatch> {
-    let size = |positions: &[[f64; 2]]| {
-        let [x, y] = sides(positions);
-        x.hypot(y)
-    };
-    let (actual, expected) = (size(positions), size(&specimen.nodes));
+    let [x, y] = sides(positions.iter().copied());
+    let (actual, expected) = (x.hypot(y), specimen.diagonal());
     match unit_ratio(expected / actual).filter(|ratio| *ratio >= 100.0) {
         Some(ratio) => Err(Mismatch::Unit {
             actual,

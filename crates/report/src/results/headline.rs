@@ -154,8 +154,8 @@ impl Headline<'_> {
     /// The largest displacement in mm, the largest force in N, and the moment of that force over the sheet's larger side in N·mm; at least so
     /// large that rounding of positions, and of the forces on a group's nodes, is negligible beside them.
     fn sizes(&self) -> [f64; 3] {
-        let [low, high] = self.state.deformed.mesh.bounding_box();
-        let side = (high[0] - low[0]).max(high[1] - low[1]);
+        let [x, y] = self.state.deformed.mesh.size();
+        let side = x.max(y);
         let largest = |[x, y]: [Column; 2], least: f64| {
             let sizes = self.states().map(|state| x.1(state).hypot(y.1(state)));
             sizes.fold(least, f64::max)

@@ -14,8 +14,7 @@ pub fn free_edges(subject: &Subject, seeds: u64) -> Result<Check, Error> {
         unnamed: Unnamed::Tested,
         ..Knowledge::default()
     };
-    let [low, high] = subject.mesh.bounding_box();
-    let length = high[0] - low[0];
+    let [length, _] = subject.mesh.size();
     let right = |seed: u64| -> Result<bool, Error> {
         let data = subject.data(Disturbance::noise(MIDDLE), seed);
         let actual = subject.estimate(&data, &knowledge)?;

@@ -37,11 +37,11 @@ pub struct Markers {
 impl Truth {
     /// Solves the specimen of the plate's material with its ends pulled apart.
     pub fn new(mesh: Mesh, plate: &ClampedPlate, stretch: f64) -> Result<Self, Error> {
-        let [low, high] = mesh.bounding_box();
+        let [length, _] = mesh.size();
         let clamp = |x: f64| Support::Displacement([Some(x), Some(0.0)]);
         let clamps = vec![
             ("left".into(), clamp(0.0)),
-            ("right".into(), clamp(stretch * (high[0] - low[0]))),
+            ("right".into(), clamp(stretch * length)),
         ];
         let problem = BoundaryProblem::supported(plate.thickness, Arc::clone(&plate.law), clamps);
         let energy = problem.finite_elements(&mesh);

@@ -1,7 +1,7 @@
 //! Conditions on the internal forces of a potential.
 
 use super::{Condition, Linearisation};
-use crate::mesh::geometry::bounding_box;
+use crate::mesh::geometry::sides;
 use crate::solve::vector::{gather, largest, moved};
 use crate::solve::{Assembly, Inadmissible, Potential, SkewCoupling, SparseRows};
 
@@ -107,8 +107,8 @@ fn internal_forces(
 /// The longer side of a box around the free unknowns in mm; 1 where their positions are not known.
 fn extent(assembly: &Assembly) -> f64 {
     assembly.positions().map_or(1.0, |positions| {
-        let [low, high] = bounding_box(positions);
-        (high[0] - low[0]).max(high[1] - low[1])
+        let [x, y] = sides(positions);
+        x.max(y)
     })
 }
 

@@ -3,7 +3,7 @@
 use crate::estimation::FieldEstimate;
 use crate::markers::Frame;
 use crate::mesh::Mesh;
-use crate::mesh::geometry::bounding_box;
+use crate::mesh::geometry::sides;
 use crate::results::{
     Deformed, Drawing, FieldFigure, Figure, Panel, ShownFields, mesh_outlines, sheet_figures,
 };
@@ -105,9 +105,8 @@ impl Pictures<'_> {
         frame: &Frame,
         values: impl Iterator<Item = f64>,
     ) -> FieldFigure {
-        let [low, high] = bounding_box(frame.markers.iter().map(|marker| marker.position));
-        let area = (high[0] - low[0]) * (high[1] - low[1]);
-        let half = 0.35 * (area / frame.markers.len() as f64).sqrt();
+        let [length, width] = sides(frame.markers.iter().map(|marker| marker.position));
+        let half = 0.35 * (length * width / frame.markers.len() as f64).sqrt();
         let squares = frame.markers.iter().zip(values).map(|(marker, value)| {
             let [x, y] = [0, 1].map(|axis| marker.position[axis] + marker.displacement[axis]);
             let corners = [[-half, -half], [half, -half], [half, half], [-half, half]];

@@ -177,8 +177,8 @@ fn not_explained(estimate: &FieldEstimate) -> Option<Doubt> {
 fn no_measurement(study: &MarkerStudy, estimate: &FieldEstimate) -> Option<Doubt> {
     /// Noise over the specimen's smaller extent, and over the largest displacement.
     const NO_MEASUREMENT: f64 = 0.03;
-    let (noise, [low, high]) = (estimate.noise, study.mesh.bounding_box());
-    let share = noise / (high[0] - low[0]).min(high[1] - low[1]);
+    let (noise, [x, y]) = (estimate.noise, study.mesh.size());
+    let share = noise / x.min(y);
     let moved = largest(&estimate.displacement);
     let is_none = share > NO_MEASUREMENT && noise > NO_MEASUREMENT * moved;
     (estimate.verdict.answer != Answer::NotExplained && is_none).then(|| {

@@ -228,8 +228,8 @@ fn scales(specimen: &Specimen, models: &Models) -> [f64; 3] {
         .flatten()
         .map(|state| state.force[0].hypot(state.force[1]));
     let force = sizes.fold(0.0, f64::max);
-    let [low, high] = models.on_lattice.springs.mesh.bounding_box();
-    let side = (high[0] - low[0]).max(high[1] - low[1]);
+    let [x, y] = models.on_lattice.springs.mesh.size();
+    let side = x.max(y);
     [force, force * side, side]
 }
 

@@ -207,9 +207,7 @@ impl<'a> StatedSheet<'a> {
             regions,
             ..Specimen::of(&name, card, problem, outline, group)
         };
-        let [low, high] = mesh.bounding_box();
-        let size = [0, 1].map(|axis| high[axis] - low[axis]);
-        check_thickness(&section, thickness, size, Some(&specimen.card));
+        check_thickness(&section, thickness, mesh.size(), Some(&specimen.card));
         given.check(root, &specimen.problem, &mesh);
         warn_of_parts(&section, &specimen, &mesh);
         Some(specimen)

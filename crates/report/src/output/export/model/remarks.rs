@@ -98,8 +98,8 @@ impl Model<'_> {
     }
 
     fn smaller_extent(&self) -> f64 {
-        let [low, high] = self.given.mesh.bounding_box();
-        (high[0] - low[0]).min(high[1] - low[1])
+        let [x, y] = self.given.mesh.size();
+        x.min(y)
     }
 
     /// Where the cells differ.
