@@ -177,21 +177,13 @@ impl Sweep {
 
     /// Reads the study of a run.
     fn ready(&self, run: &Run) -> Result<PreparedStudy, Error> {
-        let located = |error: Error| match error {
-            Error::Input(faults) => {
-                // Line numbers of a run's study differ from those of the file.
-                let named = |fault: Diagnostic| Diagnostic {
-                    message: format!("run {}: {}", run.number, fault.message),
-                    position: None,
-                    ..fault
-                };
-                Error::Input(faults.into_iter().map(named).collect())
-            }
-            other => other,
+        // Line numbers of a run's study differ from those of the file.
+        let of_run = |fault: Diagnostic| Diagnostic {
+            position: None,
+            ..fault.prefixed(format_args!("run {}", run.number))
         };
-        self.study
-            .with(&self.keys(), &run.settings)
-            .map_err(located)
+        let study = self.study.with(&self.keys(), &run.settings);
+        study.map_err(|error| error.map_faults(of_run))
     }
 
     fn row(&self, run: &Run, attend: &dyn Fn()) -> Result<Row, Error> {

@@ -57,10 +57,7 @@ impl Points {
     /// # Errors
     /// [`Error::Input`] where it is not one, and the errors of [`Points::of_columns`].
     pub fn parse(path: &Path, bytes: &[u8]) -> Result<Self, Error> {
-        let named = |fault: Diagnostic| {
-            let message = format!("{}: {}", path.display(), fault.message);
-            Error::Input(vec![Diagnostic { message, ..fault }])
-        };
+        let named = |fault: Diagnostic| Error::from(fault.prefixed(path.display()));
         let records = read_records(bytes)
             .filter(|records| !records.is_empty())
             .ok_or_else(|| {

@@ -322,10 +322,7 @@ fn keys(of: &[&Parameter]) -> String {
 
 /// Faults of a card that is not written yet, in the words of the options.
 fn of_options(error: Error) -> Error {
-    let Error::Input(faults) = error else {
-        return error;
-    };
-    let of_option = |fault: Diagnostic| {
+    error.map_faults(|fault| {
         let key = match fault.key.split_once('.') {
             Some(("parameters", key)) => format!("--parameter {key}"),
             Some(("volume", "poisson_ratio")) => "--poisson".to_owned(),
@@ -342,6 +339,5 @@ fn of_options(error: Error) -> Error {
             hint,
             ..fault
         }
-    };
-    Error::Input(faults.into_iter().map(of_option).collect())
+    })
 }

@@ -252,21 +252,15 @@ fn followed(tracker: &mut Tracker, file: &ImageFile) -> Result<[Vec<Option<Track
 
 /// A fault with the name of its image, where it does not have it.
 fn of_file<T>(file: &ImageFile, result: Result<T, Error>) -> Result<T, Error> {
-    result.map_err(|error| match error {
-        Error::Input(faults) => {
-            let named = |fault: Diagnostic| {
-                let name = file.path.display().to_string();
-                let message = if fault.message.contains(&name) {
-                    fault.message
-                } else {
-                    format!("{name}: {}", fault.message)
-                };
-                Diagnostic { message, ..fault }
-            };
-            Error::Input(faults.into_iter().map(named).collect())
+    let named = |fault: Diagnostic| {
+        let name = file.path.display().to_string();
+        if fault.message.contains(&name) {
+            fault
+        } else {
+            fault.prefixed(name)
         }
-        other => other,
-    })
+    };
+    result.map_err(|error| error.map_faults(named))
 }
 
 fn left_out(fault: Diagnostic, number: usize) -> Diagnostic {

@@ -355,12 +355,8 @@ fn of_frame(error: Error, number: usize, frames: usize) -> Error {
             step: format!("frame {number}"),
             fault: fault.of_measured(),
         },
-        Error::Input(faults) if frames > 1 => {
-            let named = |fault: Diagnostic| Diagnostic {
-                message: format!("frame {number}: {}", fault.message),
-                ..fault
-            };
-            Error::Input(faults.into_iter().map(named).collect())
+        other if frames > 1 => {
+            other.map_faults(|fault| fault.prefixed(format_args!("frame {number}")))
         }
         other => other,
     }

@@ -148,9 +148,8 @@ fn of_field(mesh: &Mesh) -> SpecimenMesh {
     let faults = mesh.faults(Exemptions::default()).into_iter();
     let warnings = faults.map(|fault| Diagnostic {
         severity: Severity::Warning,
-        message: format!("the field's own mesh: {}", fault.message),
         hint: Some("correct the field on a valid mesh: --mesh or --outline".into()),
-        ..fault
+        ..fault.prefixed("the field's own mesh")
     });
     SpecimenMesh {
         warnings: warnings.collect(),
