@@ -112,18 +112,6 @@ fn dice_is_read_in_pixels_and_its_y_axis_turned_up() {
 }
 
 #[test]
-fn early_versions_of_dice_have_match_and_stereo_has_its_own_columns() {
-    let early = "COORDINATE_X,COORDINATE_Y,DISPLACEMENT_X,DISPLACEMENT_Y,GAMMA,MATCH\n1,2,3,4,0,0\n2,2,3,4,0,-1\n";
-    let measured = read_texts(&[("a.txt", early)], &unit(1.0)).unwrap();
-    first_frame_is(&measured, &[marker(0, [1.0, -2.0], [3.0, -4.0])]);
-    let stereo = "COORDINATE_X,COORDINATE_Y,MODEL_COORDINATES_X,MODEL_COORDINATES_Y,DISPLACEMENT_X,DISPLACEMENT_Y,\
-                  MODEL_DISPLACEMENT_X,MODEL_DISPLACEMENT_Y,SIGMA\n61,971,5,7,1,1,0.5,0.25,0.02\n";
-    let measured = read_texts(&[("a.txt", stereo)], &unit(1.0)).unwrap();
-    assert_eq!(measured.understood.layout, "DICe, stereo");
-    first_frame_is(&measured, &[marker(0, [5.0, 7.0], [0.5, 0.25])]);
-}
-
-#[test]
 fn points_that_vic_and_dice_did_not_find_are_lost() {
     for (head, rows, layout) in [
         (
@@ -136,6 +124,12 @@ fn points_that_vic_and_dice_did_not_find_are_lost() {
              MODEL_DISPLACEMENT_X,MODEL_DISPLACEMENT_Y,SIGMA",
             "61,971,1,2,9,9,3,4,0.02\n71,971,2,2,0,0,0,0,-1\n",
             "DICe, stereo",
+        ),
+        // Early versions have MATCH instead of SIGMA.
+        (
+            "COORDINATE_X,COORDINATE_Y,DISPLACEMENT_X,DISPLACEMENT_Y,GAMMA,MATCH",
+            "1,-2,3,-4,0,0\n2,-2,3,-4,0,-1\n",
+            "DICe",
         ),
     ] {
         let text = format!("{head}\n{rows}");
