@@ -37,7 +37,7 @@ pub use import::{
     import_field, import_series,
 };
 pub use interpolation::{CellPoint, Interpolation};
-pub use nodal_field::NodalField;
+pub use nodal_field::{largest_distance, vectors, weighted_distance, weighted_norm};
 pub use outline::corners;
 pub use outline::{Outline, OutlineFault, OutlineOfPoints, straightened};
 pub use parts::Parts;

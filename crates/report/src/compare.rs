@@ -11,7 +11,7 @@
 //! The affine stretch is a large part of the displacement of any stretched plate and is right in every model: the
 //! departure from it is the strict measure.
 
-use crate::mesh::{Mesh, NodalField};
+use crate::mesh::{Mesh, weighted_distance, weighted_norm};
 
 pub mod imported;
 pub mod judgement;
@@ -30,8 +30,8 @@ pub fn displacement_percent(mesh: &Mesh, field: &[f64], reference: &[f64]) -> f6
 /// When the mesh is not that of a plate.
 pub fn departure_percent(mesh: &Mesh, field: &[f64], reference: &[f64], affine: &[f64]) -> f64 {
     let areas = mesh.nodal_areas();
-    let departure = reference.weighted_distance(affine, &areas);
-    100.0 * field.weighted_distance(reference, &areas) / departure
+    let departure = weighted_distance(reference, affine, &areas);
+    100.0 * weighted_distance(field, reference, &areas) / departure
 }
 
 /// Distance of two fields on the corners of any mesh in relative L2, weighted by area, in %. The area of a cell is
@@ -50,7 +50,7 @@ fn weighted_percent(mesh: &Mesh, areas: &[f64], field: &[f64], reference: &[f64]
     const ROUNDING: f64 = 1e-15;
     let [x, y] = mesh.size();
     let size = x.max(y) * areas.iter().sum::<f64>().sqrt();
-    let rests = |field: &[f64]| field.weighted_norm(areas) <= ROUNDING * size;
+    let rests = |field: &[f64]| weighted_norm(field, areas) <= ROUNDING * size;
     if rests(field) && rests(reference) {
         0.0
     } else {
@@ -59,5 +59,5 @@ fn weighted_percent(mesh: &Mesh, areas: &[f64], field: &[f64], reference: &[f64]
 }
 
 fn percent(areas: &[f64], field: &[f64], reference: &[f64]) -> f64 {
-    100.0 * field.weighted_distance(reference, areas) / reference.weighted_norm(areas)
+    100.0 * weighted_distance(field, reference, areas) / weighted_norm(reference, areas)
 }

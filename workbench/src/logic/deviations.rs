@@ -1,7 +1,7 @@
 //! How far a model is from the finite elements with the grip at the same place, in percent.
 
 use gelbench::mesh::Mesh;
-use gelbench_mechanics::mesh::NodalField;
+use gelbench_mechanics::mesh::weighted_distance;
 use gelbench_report::compare::area_weighted_percent;
 
 use super::engine::{Solved, between_grips};
@@ -28,10 +28,10 @@ impl Deviation {
         let areas = lattice.corner_areas();
         let grips = [Grip::default(), scene.grip];
         let linear = between_grips(lattice, [scene.size[0], scene.axis()], grips);
-        let departure = expected.weighted_distance(&linear, &areas);
+        let departure = weighted_distance(expected, &linear, &areas);
         Some(Self {
             displacement: area_weighted_percent(lattice, computed, expected),
-            departure: 100.0 * computed.weighted_distance(expected, &areas) / departure,
+            departure: 100.0 * weighted_distance(computed, expected, &areas) / departure,
             force: force_percent(model.force, elements.force),
         })
     }

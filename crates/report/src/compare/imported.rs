@@ -14,7 +14,9 @@ use crate::document::{Table, is_table_path};
 use crate::error::Error;
 use crate::markers::unit_ratio;
 use crate::mesh::geometry::sides;
-use crate::mesh::{ImportedField, Mesh, NodalField, import_field};
+use crate::mesh::{
+    ImportedField, Mesh, import_field, largest_distance, weighted_distance, weighted_norm,
+};
 use crate::problem::RigidMotion;
 use crate::units::{decimals, extents};
 
@@ -278,11 +280,11 @@ impl Sites {
     /// `Mismatch::Zero` where the imported field is zero, so that no difference can be related to it.
     pub fn difference(&self, field: &ModelField) -> Result<Difference, Mismatch> {
         let computed = self.at(field);
-        let size = self.expected.weighted_norm(&self.weights);
+        let size = weighted_norm(&self.expected, &self.weights);
         if size == 0.0 {
             return Err(Mismatch::Zero);
         }
-        let (largest, position) = computed.largest_distance(&self.expected);
+        let (largest, position) = largest_distance(&computed, &self.expected);
         let product = |a: &[f64], b: &[f64]| -> f64 {
             let terms = a.iter().zip(b).zip(0..);
             terms
@@ -296,10 +298,10 @@ impl Sites {
         Ok(Difference {
             factor,
             shift,
-            shifted_percent: 100.0 * computed.weighted_distance(&shifted, &self.weights) / size,
-            scaled_percent: 100.0 * computed.weighted_distance(&scaled, &self.weights)
+            shifted_percent: 100.0 * weighted_distance(&computed, &shifted, &self.weights) / size,
+            scaled_percent: 100.0 * weighted_distance(&computed, &scaled, &self.weights)
                 / (factor.abs() * size),
-            percent: 100.0 * computed.weighted_distance(&self.expected, &self.weights) / size,
+            percent: 100.0 * weighted_distance(&computed, &self.expected, &self.weights) / size,
             largest,
             position: self.positions[position],
         })

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use super::sheet::NodalSheet;
 use super::{Deformed, SheetField};
-use crate::mesh::{Mesh, NodalField};
+use crate::mesh::{Mesh, vectors};
 use crate::problem::SheetLaws;
 
 /// The cells that contain a point, with its natural coordinates in each; none of a point that is not on the sheet.
@@ -30,7 +30,7 @@ impl Deformed<'_> {
             return Vec::new();
         }
         let sheet = NodalSheet::new(laws, self);
-        let displacement: Vec<[f64; 2]> = sheet.displacement.vectors().collect();
+        let displacement: Vec<[f64; 2]> = vectors(&sheet.displacement).collect();
         let in_cell = |(cell, local): (usize, [f64; 2])| {
             let weights = sheet.mesh.shape(cell).values(local);
             let nodes = || sheet.mesh.cell(cell).iter().zip(&weights);

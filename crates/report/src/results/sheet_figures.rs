@@ -3,7 +3,7 @@
 use super::sheet::{Deformed, NodalSheet};
 use super::{FieldFigure, Figure, LocalState, Panel};
 use crate::document::name_of;
-use crate::mesh::NodalField;
+use crate::mesh::vectors;
 use crate::problem::SheetLaws;
 use crate::units::Dimension;
 
@@ -162,7 +162,7 @@ pub fn sheet_figures(
         .collect();
     let figure = |field: &SheetField| {
         let panel = |(model, sheet): (&Deformed, &NodalSheet)| {
-            let u: Vec<[f64; 2]> = sheet.displacement.vectors().collect();
+            let u: Vec<[f64; 2]> = vectors(&sheet.displacement).collect();
             let value = |node: usize| field.value(&sheet.states[node], u[node]);
             Panel::at_nodes(&model.label, &sheet.mesh, &sheet.displacement, &value)
         };

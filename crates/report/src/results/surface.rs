@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::mesh::{CellShape, Mesh, NodalField};
+use crate::mesh::{CellShape, Mesh, vectors};
 use crate::statistics::extremes;
 
 /// Triangles on the deformed mesh, and its edge deformed and at rest; all coordinates in mm.
@@ -26,7 +26,7 @@ const MOST_DIVIDED: usize = 12_000;
 impl Surface {
     /// The surface of a mesh with ux, uy of node after node; cells of the second degree are divided.
     pub fn new(mesh: &Mesh, displacement: &[f64]) -> Self {
-        let nodes = mesh.nodes.iter().zip(displacement.vectors());
+        let nodes = mesh.nodes.iter().zip(vectors(displacement));
         let moved: Vec<[f64; 2]> = nodes.map(|([x, y], [ux, uy])| [x + ux, y + uy]).collect();
         let [x, y] = [0, 1].map(|axis| Self::values(mesh, &|node| moved[node][axis]));
         let mut surface = Self {

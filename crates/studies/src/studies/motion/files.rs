@@ -4,7 +4,7 @@ use super::between::{PARTS, with_cubics};
 use super::problem::MovingSheet;
 use super::solution::{ModelMotion, Motions};
 use crate::dynamics::{EnergyBalance, Instant};
-use crate::mesh::NodalField;
+use crate::mesh::vectors;
 use crate::results::models::CORRECTED;
 use crate::results::{
     Animation, Content, Drawing, FieldFigure, Figure, Frame, Grid, GridSeries, Line, LineChart,
@@ -36,7 +36,7 @@ impl Motions {
     /// The axis along which the finite elements are displaced farther.
     pub fn axis(&self) -> usize {
         let instants = self.elements.instants().iter();
-        larger_axis(instants.flat_map(|now| now.displacement.vectors()))
+        larger_axis(instants.flat_map(|now| vectors(&now.displacement)))
     }
 }
 

@@ -3,7 +3,7 @@
 use super::models::Models;
 use crate::compare::area_weighted_percent;
 use crate::compare::judgement::{Judgement, judge, judge_correction};
-use crate::mesh::{Mesh, NodalField};
+use crate::mesh::{Mesh, largest_distance};
 use crate::problem::Solution;
 use crate::results::{Check, Wanted};
 use crate::statistics::larger;
@@ -109,7 +109,7 @@ fn distance(
         displacement,
         departure_share: departure_share(specimen, mesh, specimen.factors[step], expected),
         measured,
-        largest: field.largest_distance(expected).0,
+        largest: largest_distance(field, expected).0,
     })
 }
 
