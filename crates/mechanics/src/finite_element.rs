@@ -90,22 +90,8 @@ impl FiniteElements {
         format!("{}, {}", self.element.name(), self.mesh.describe())
     }
 
-    /// The estimated error of a state, by recovery on this mesh. No loading history enters: where the material
-    /// softens, the estimate is that of a first loading.
-    ///
-    /// # Errors
-    /// A [`SolveFault`] when the tangent at the state cannot be factorised.
-    pub fn estimate(
-        &self,
-        plate: &ClampedPlate,
-        state: &State,
-        recovery: &Recovery,
-    ) -> Result<ErrorEstimate, SolveFault> {
-        let mut one = self.estimates(plate, std::slice::from_ref(state), recovery);
-        one.swap_remove(0)
-    }
-
-    /// The estimated error of each of several states.
+    /// The estimated error of each of several states, by recovery on this mesh; a [`SolveFault`] where the tangent at the state cannot be
+    /// factorised. No loading history enters: where the material softens, the estimate is that of a first loading.
     pub fn estimates(
         &self,
         plate: &ClampedPlate,

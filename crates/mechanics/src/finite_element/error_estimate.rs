@@ -367,9 +367,9 @@ mod tests {
         let (.., exact) = solve([60, 20], Element::Q2, 3.0);
         for (element, grading) in [(Element::Q1, 2.0), (Element::Q2, 3.0)] {
             let (model, solution, values) = solve([30, 10], element, grading);
-            let estimate = model
-                .estimate(&problem, &solution, &Recovery::new(&model.mesh))
-                .unwrap();
+            let (states, recovery) = ([solution], Recovery::new(&model.mesh));
+            let mut estimates = model.estimates(&problem, &states, &recovery);
+            let estimate = estimates.remove(0).unwrap();
             let surplus = 2.0 * (values[0] - exact[0]);
             let effectivity = (estimate.energy.squared() / surplus).sqrt();
             let force = estimate.force / (values[1] - exact[1]);

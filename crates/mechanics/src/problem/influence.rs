@@ -12,30 +12,15 @@ use crate::solve::{Loading, Newton, NewtonSettings, Stage, State, Tangent, equil
 const SIDE_BY_SIDE: usize = 400_000;
 
 impl Model<'_> {
-    /// The influence field of a group along an axis, by the tangent at a state. It is the field in mm/mm caused by a
-    /// motion of the group's held unknowns while all other held unknowns rest: the dual of the group's force, so that
-    /// nodes at and beside corners that another group holds too move by their shares. For a grip with a given force,
-    /// or a group that is not held, it is the field in mm/N caused by a force on the group.
+    /// The influence field of a group along an axis, by the tangent at each of some states; a [`SolveFault`] where the tangent cannot be
+    /// factorised. It is the field in mm/mm caused by a motion of the group's held unknowns while all other held unknowns rest: the dual of
+    /// the group's force, so that nodes at and beside corners that another group holds too move by their shares. For a grip with a given
+    /// force, or a group that is not held, it is the field in mm/N caused by a force on the group.
     ///
-    /// # Errors
-    /// A [`SolveFault`] when the tangent cannot be factorised.
+    /// The tangents have one pattern. They are taken in parallel on the available threads, where factors are small.
     ///
     /// # Panics
     /// When the mesh has no such group.
-    pub fn influence(
-        &self,
-        state: &State,
-        name: &str,
-        axis: usize,
-    ) -> Result<Vec<f64>, SolveFault> {
-        let mut one = self.influences(std::slice::from_ref(state), name, axis);
-        one.swap_remove(0)
-    }
-
-    /// [`Self::influence`] at each of some states, whose tangents have one pattern; in parallel on the available threads, where factors are small.
-    ///
-    /// # Panics
-    /// As [`Self::influence`].
     pub fn influences(
         &self,
         states: &[State],

@@ -225,8 +225,8 @@ impl Pull {
         let mut model = problem.on(&mesh, &energy)?.named(NAME);
         model.add_forces(&forces(&mesh, &problem, field));
         let state = solve(&model, 1)?;
-        let influence = model.influence(&state, "right", 0);
-        let influence = influence.map_err(|fault| Error::Solve {
+        let mut influences = model.influences(std::slice::from_ref(&state), "right", 0);
+        let influence = influences.remove(0).map_err(|fault| Error::Solve {
             model: NAME.to_owned(),
             step: "load factor 1".to_owned(),
             fault,

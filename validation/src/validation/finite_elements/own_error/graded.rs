@@ -109,10 +109,11 @@ impl Plate {
         };
         let model = FiniteElements::graded(&problem, [3 * across, across], element, grading);
         let state = model.model(&problem).reach(&[STRETCH], NEWTON)?;
-        let estimate = model.estimate(&problem, &state, &Recovery::new(&model.mesh));
+        let recovery = Recovery::new(&model.mesh);
+        let mut estimates = model.estimates(&problem, std::slice::from_ref(&state), &recovery);
         Ok(Self {
             describe: model.describe(),
-            estimate: estimate.map_err(|fault| Error::Solve {
+            estimate: estimates.remove(0).map_err(|fault| Error::Solve {
                 model: model.describe(),
                 step: ClampedPlate::describe_step(STRETCH),
                 fault,
