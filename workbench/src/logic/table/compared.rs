@@ -1,29 +1,8 @@
 //! The quantities by which models are compared, and which colour them.
 
-use gelbench::mesh::Mesh;
-
 use super::Table;
 use crate::logic::deviations::Deviation;
 use crate::logic::scene::{Colour, Model, Scene};
-
-/// The area in mm² that belongs to each node, that of a cell equally to all of its nodes; sides are taken for straight.
-pub(super) fn node_areas(mesh: &Mesh) -> Vec<f64> {
-    let mut areas = vec![0.0; mesh.nodes.len()];
-    for cell in 0..mesh.cell_count() {
-        let nodes = mesh.cell(cell);
-        let corners = mesh.corners(cell);
-        let next = corners.iter().cycle().skip(1);
-        let doubled = corners.iter().zip(next).map(|(one, other)| {
-            let ([x, y], [u, v]) = (mesh.nodes[*one], mesh.nodes[*other]);
-            x * v - u * y
-        });
-        let area = 0.5 * doubled.sum::<f64>().abs();
-        for node in nodes {
-            areas[*node] += area / nodes.len() as f64;
-        }
-    }
-    areas
-}
 
 impl Table {
     /// Compares the models that have the grip where the finite elements have it.

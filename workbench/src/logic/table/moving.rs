@@ -1,7 +1,8 @@
 //! The sheet in motion, once its grip has let go.
 
+use gelbench::mesh::Mesh;
+
 use super::Table;
-use super::compared::node_areas;
 use crate::logic::engine::Fault;
 use crate::logic::engine::motion::{self, MotionAnswer, MotionQuestion};
 use crate::logic::playing::Playing;
@@ -150,7 +151,10 @@ impl Table {
         let weighted = models.iter().filter_map(|model| {
             let values = values(model)?;
             let areas = &self.areas[usize::from(*model == Model::Elements)];
-            let areas = areas.get_or_init(|| self.mesh(*model).map_or_else(Vec::new, node_areas));
+            let areas = areas.get_or_init(|| {
+                let mesh = self.mesh(*model);
+                mesh.map_or_else(Vec::new, Mesh::areas_of_all_nodes)
+            });
             Some(values.into_iter().zip(areas.iter().copied()))
         });
         weighted.flatten().collect()
