@@ -7,14 +7,19 @@ pub const PARTS: usize = 12;
 /// a sine with five instants a period.
 const FAR: f64 = 0.15;
 
-/// Times in s, displacements in mm and velocities in mm/s at the instants and between them, on the cubics that have the displacement and
-/// the velocity of both of their ends:
+/// The cubic that has the displacement and the velocity of both ends of an interval of h s:
 ///
 /// ```text
-/// x(s) = (1 + 2s)(1 − s)² x₀ + s(1 − s)² h v₀ + s²(3 − 2s) x₁ − s²(1 − s) h v₁,   s = (t − t₀)/h,   v = dx/dt
+/// x(s) = (1 + 2s)(1 − s)² x₀ + s(1 − s)² h v₀ + s²(3 − 2s) x₁ − s²(1 − s) h v₁,   s = (t − t₀)/h
 /// ```
-///
-/// and on straight lines where the instants are too far apart for a cubic: where the mean of both velocities is not that of the interval.
+pub fn cubic(s: f64, h: f64, [[x0, v0], [x1, v1]]: [[f64; 2]; 2]) -> f64 {
+    let r = 1.0 - s;
+    let before = r * r * (1.0 + 2.0 * s) * x0 + h * s * r * r * v0;
+    before + (s * s * (1.0 + 2.0 * r) * x1 - h * s * s * r * v1)
+}
+
+/// Times in s, displacements in mm and velocities in mm/s at the instants and between them, on cubics, and on straight lines where the
+/// instants are too far apart for a cubic: where the mean of both velocities is not that of the interval.
 pub fn with_cubics(instants: &[[f64; 3]]) -> Vec<[f64; 3]> {
     let between = instants.windows(2).flat_map(|pair| {
         let [[t0, x0, v0], [t1, x1, v1]] = [pair[0], pair[1]];
@@ -28,9 +33,7 @@ pub fn with_cubics(instants: &[[f64; 3]]) -> Vec<[f64; 3]> {
             if !is_smooth {
                 return [t0 + s * h, r * x0 + s * x1, r * v0 + s * v1];
             }
-            let x =
-                (1.0 + 2.0 * s) * r * r * x0 + s * r * r * h * v0 + s * s * (3.0 - 2.0 * s) * x1
-                    - s * s * r * h * v1;
+            let x = cubic(s, h, [[x0, v0], [x1, v1]]);
             let v =
                 6.0 * s * r * (x1 - x0) / h + r * (1.0 - 3.0 * s) * v0 + s * (3.0 * s - 2.0) * v1;
             [t0 + s * h, x, v]

@@ -2,6 +2,7 @@
 
 use web_time::Instant as Clock;
 
+use super::between::cubic;
 use super::problem::MovingSheet;
 use super::solution::{Correction, ModelMotion};
 use crate::corrector::motion::{EquationOfMotion, WindowSettings};
@@ -181,22 +182,12 @@ fn between(instants: &[Instant], within: usize) -> Vec<Vec<f64>> {
 }
 
 fn hermite(pair: &[Instant], s: f64) -> Vec<f64> {
-    let length = pair[1].time - pair[0].time;
-    let r = 1.0 - s;
-    let shares = [r * r * (1.0 + 2.0 * s), s * s * (1.0 + 2.0 * r)];
-    let rates = [length * s * r * r, -length * s * s * r];
+    let [from, to] = [&pair[0], &pair[1]];
     let value = |unknown: usize| {
-        let term = |end: usize| {
-            let Instant {
-                displacement,
-                velocity,
-                ..
-            } = &pair[end];
-            shares[end] * displacement[unknown] + rates[end] * velocity[unknown]
-        };
-        term(0) + term(1)
+        let ends = [from, to].map(|end| [end.displacement[unknown], end.velocity[unknown]]);
+        cubic(s, to.time - from.time, ends)
     };
-    (0..pair[0].displacement.len()).map(value).collect()
+    (0..from.displacement.len()).map(value).collect()
 }
 
 /// Differences of second order: central ones, and at the end and beside a mark (in steps), where velocities jump, those of one side. At a
