@@ -69,11 +69,11 @@ impl<'a> Sum<'a> {
         }
     }
 
-    /// Π − f·u with a force in N on every unknown.
-    pub fn with_forces(energy: impl Potential + 'a, forces: &[f64]) -> Self {
+    /// Π − f·u of a body without a history, with a force in N on every unknown.
+    pub fn with_forces(energy: &'a dyn Remembering, forces: &[f64]) -> Self {
         let forces = forces.iter().copied().enumerate();
         let forces = DeadForces::new(energy.unknowns(), forces);
-        Self::new(energy, forces)
+        Self::new(After::new(energy, &[]), forces)
     }
 
     /// The part to which an element belongs, and its number there.

@@ -188,25 +188,3 @@ impl ElementTerms {
         potential.evaluate_element(element, &self.values, local)
     }
 }
-
-impl<P: Potential + ?Sized> Potential for &P {
-    fn connectivity(&self) -> &Connectivity {
-        (**self).connectivity()
-    }
-
-    fn evaluate_element(&self, element: usize, u: &[f64], local: Local<'_>) -> Evaluated {
-        (**self).evaluate_element(element, u, local)
-    }
-
-    fn evaluate(&self, u: &[f64], forces: &mut [f64], take: Take<'_>) -> Evaluated {
-        (**self).evaluate(u, forces, take)
-    }
-
-    fn skew_couplings(&self) -> Vec<SkewCoupling> {
-        (**self).skew_couplings()
-    }
-
-    fn instability(&self, element: usize, u: &[f64]) -> Option<String> {
-        (**self).instability(element, u)
-    }
-}
