@@ -2,9 +2,9 @@
 
 use std::fs;
 
+use gelbench_base::statistics::normal_numbers;
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use rand_distr::{Distribution, StandardNormal};
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -181,10 +181,8 @@ fn what_the_data_contradict_stands_beside_the_figures_and_in_the_exit_code() {
 
 /// The markers of the second frame with means of white noise over squares of so many markers.
 fn with_smooth_noise(across: usize) -> String {
-    let mut random = ChaCha8Rng::seed_from_u64(21);
-    let white: Vec<f64> = (0..2 * 40 * 20)
-        .map(|_| StandardNormal.sample(&mut random))
-        .collect();
+    let mut normal = normal_numbers(21);
+    let white: Vec<f64> = (0..2 * 40 * 20).map(|_| normal()).collect();
     let mut table = "x [mm],y [mm],ux [mm],uy [mm]\n".to_owned();
     for line in second_frame(|_| true).lines().skip(1) {
         let line: Vec<f64> = line.split(',').filter_map(|x| x.parse().ok()).collect();

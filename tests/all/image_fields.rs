@@ -13,11 +13,9 @@ use gelbench::mesh::{CellShape, Mesh};
 use gelbench::problem::BoundaryProblem;
 use gelbench::solve::NewtonSettings;
 use gelbench::studies::markers::{Conditions, MarkerStudy, MeshSource, Request};
+use gelbench_base::statistics::normal_numbers;
 use gelbench_images::images::ImageFile;
 use gelbench_studies::studies::images::ImageSettings;
-use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
-use rand_distr::{Distribution, StandardNormal};
 use rayon::prelude::*;
 
 use crate::common::sheets::{STRIP_WITH_HOLE, held, named};
@@ -167,9 +165,9 @@ fn image(
     for _ in 0..blur {
         rows = blurred(&rows);
     }
-    let mut random = ChaCha8Rng::seed_from_u64(name.len() as u64);
+    let mut normal = normal_numbers(name.len() as u64);
     let values = rows.concat().into_iter().map(|value| {
-        let error: f64 = StandardNormal.sample(&mut random);
+        let error = normal();
         (255.0 * (value + noise * error)).round().clamp(0.0, 255.0) as f32
     });
     ImageFile::of_values(name, PIXEL_COUNTS, values.collect()).unwrap()

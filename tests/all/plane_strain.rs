@@ -9,10 +9,8 @@ use gelbench::material::{HyperelasticLaw, NeoHooke, PlaneState, Volume, VolumeEn
 use gelbench::mesh::{CellShape, Mesh};
 use gelbench::problem::{BoundaryProblem, Support};
 use gelbench::solve::NewtonSettings;
+use gelbench_base::statistics::normal_numbers;
 use gelbench_mechanics::material::volume::bulk_modulus;
-use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
-use rand_distr::{Distribution, StandardNormal};
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -60,14 +58,12 @@ fn measure(folder: &Path, poisson_ratio: f64) -> f64 {
         .solve(&[0.25, 0.5, 0.75, 1.0], settings, &|_| {})
         .unwrap();
     let last = states.last().unwrap();
-    let mut random = ChaCha8Rng::seed_from_u64(5);
+    let mut normal = normal_numbers(5);
     let mut text = String::from("x [mm],y [mm],ux [mm],uy [mm]\n");
     for (i, j) in (0..=16).flat_map(|i| (0..=8).map(move |j| (i, j))) {
         let [x, y] = [3.75 * f64::from(i), 3.75 * f64::from(j)];
         let u = mesh.displacement_at(&last.displacement, [x, y]);
-        let mut noise = || -> f64 {
-            NOISE * <StandardNormal as Distribution<f64>>::sample(&StandardNormal, &mut random)
-        };
+        let mut noise = || NOISE * normal();
         let _ = writeln!(text, "{x},{y},{},{}", u[0] + noise(), u[1] + noise());
     }
     fs::write(folder.join("block.csv"), text).unwrap();

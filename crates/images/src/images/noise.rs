@@ -140,9 +140,7 @@ impl Noise {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rand::SeedableRng;
-    use rand_chacha::ChaCha8Rng;
-    use rand_distr::{Distribution, StandardNormal};
+    use gelbench_base::statistics::normal_numbers;
 
     #[test]
     fn noise_and_its_growth_are_found_from_residuals() {
@@ -150,11 +148,11 @@ mod tests {
             base: 4.0,
             growth: 0.2,
         };
-        let mut random = ChaCha8Rng::seed_from_u64(1);
+        let mut normal = normal_numbers(1);
         let mut classes = Classes::new(255.0);
         for k in 0..100_000 {
             let intensity = 20.0 + f64::from(k % 200);
-            let value: f64 = StandardNormal.sample(&mut random);
+            let value = normal();
             classes.add(intensity, truth.variance(intensity) * value * value);
         }
         let estimate = classes.noise().unwrap();
@@ -170,13 +168,12 @@ mod tests {
 
     #[test]
     fn the_noise_of_a_smooth_image_is_found_from_it_alone() {
-        let mut random = ChaCha8Rng::seed_from_u64(2);
+        let mut normal = normal_numbers(2);
         let mut image = GreyImage::of(200, 200, |x, y| {
             100.0 + 50.0 * (0.2 * x as f32).sin() * (0.15 * y as f32).cos()
         });
         for value in image.values_mut() {
-            let noise: f64 = StandardNormal.sample(&mut random);
-            *value += 3.0 * noise as f32;
+            *value += 3.0 * normal() as f32;
         }
         let deviation = Noise::of_image(&image, &vec![true; 40_000])
             .variance(100.0)

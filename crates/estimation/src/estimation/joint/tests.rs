@@ -1,15 +1,12 @@
 use std::path::Path;
 
-use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
-use rand_distr::{Distribution, StandardNormal};
-
 use super::*;
 use crate::estimation::tests::{SIZE, grid, measured_force, solved, specimen, with_grips};
 use crate::estimation::{EdgeCondition, Knowledge};
 use crate::markers::Marker;
 use crate::material::Card;
 use crate::mesh::{CellShape, Mesh};
+use crate::statistics::normal_numbers;
 
 const CELLS: [usize; 2] = [20, 10];
 const STRETCHES: [f64; 5] = [0.1, 0.25, 0.4, 0.6, 0.9];
@@ -38,8 +35,7 @@ impl Series {
         let fine = Mesh::plate(SIZE, cells, CellShape::Quad9);
         let motion = [SIZE[0], 0.0];
         let states = solved(&fine, law.at(&law.start()), "right", motion, stretches);
-        let mut random = ChaCha8Rng::seed_from_u64(seed);
-        let mut draw = || -> f64 { StandardNormal.sample(&mut random) };
+        let mut draw = normal_numbers(seed);
         let mut series = Self {
             mesh: Mesh::plate(SIZE, CELLS, CellShape::Quad9),
             law,

@@ -114,15 +114,11 @@ impl Robust {
 
 #[cfg(test)]
 mod tests {
-    use rand::SeedableRng;
-    use rand_chacha::ChaCha8Rng;
-    use rand_distr::{Distribution, StandardNormal};
-
     use super::*;
+    use crate::statistics::normal_numbers;
 
     fn distances(count: usize, noise: f64) -> Vec<f64> {
-        let mut random = ChaCha8Rng::seed_from_u64(7);
-        let mut draw = || -> f64 { StandardNormal.sample(&mut random) };
+        let mut draw = normal_numbers(7);
         (0..count).map(|_| noise * draw().hypot(draw())).collect()
     }
 

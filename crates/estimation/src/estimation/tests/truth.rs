@@ -2,10 +2,6 @@
 
 use std::sync::Arc;
 
-use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
-use rand_distr::{Distribution, StandardNormal};
-
 use crate::estimation::{
     EdgeCondition, FieldEstimate, Knowledge, MeasuredForce, Specimen, estimate,
 };
@@ -15,6 +11,7 @@ use crate::material::{HyperelasticLaw, NeoHooke};
 use crate::mesh::{CellShape, Mesh, Outline};
 use crate::problem::{BoundaryProblem, Support};
 use crate::solve::{NewtonSettings, State};
+use crate::statistics::normal_numbers;
 
 pub(in super::super) const SIZE: [f64; 2] = [60.0, 30.0];
 pub(super) const THICKNESS: f64 = 2.0;
@@ -127,8 +124,7 @@ pub(super) fn noisy(
     noise: f64,
     seed: u64,
 ) -> Vec<Marker> {
-    let mut random = ChaCha8Rng::seed_from_u64(seed);
-    let mut draw = || -> f64 { StandardNormal.sample(&mut random) };
+    let mut draw = normal_numbers(seed);
     let marker = |(number, position): (usize, &[f64; 2])| Marker {
         number,
         position: *position,

@@ -1,13 +1,11 @@
 //! The verdicts on the right law and on a wrong one under noise that is white, or of which few values are independent.
 
 use nalgebra::DMatrix;
-use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
-use rand_distr::{Distribution, StandardNormal};
 use rayon::prelude::*;
 
 use super::*;
 use crate::mesh::{CellShape, Mesh};
+use crate::statistics::normal_numbers;
 
 /// 31 × 18 markers on the plate.
 fn positions() -> Vec<[f64; 2]> {
@@ -41,10 +39,8 @@ fn disturbed(
     noise: f64,
     seed: u64,
 ) -> Vec<Marker> {
-    let mut random = ChaCha8Rng::seed_from_u64(seed);
-    let white = DMatrix::from_fn(positions.len(), 2, |_, _| {
-        StandardNormal.sample(&mut random)
-    });
+    let mut normal = normal_numbers(seed);
+    let white = DMatrix::from_fn(positions.len(), 2, |_, _| normal());
     let values = root.map_or(white.clone(), |root| root * &white);
     let marker = |(number, position): (usize, &[f64; 2])| {
         let exact = truth.at(*position);

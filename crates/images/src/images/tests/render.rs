@@ -1,8 +1,6 @@
 //! A camera that shares nothing with the tracking: patterns are formulas, and a frame is what falls on its pixels.
 
-use rand::SeedableRng;
-use rand_chacha::ChaCha8Rng;
-use rand_distr::{Distribution, StandardNormal};
+use gelbench_base::statistics::normal_numbers;
 use rayon::prelude::*;
 
 use super::patterns::Pattern;
@@ -41,7 +39,7 @@ impl Camera {
         let rows: Vec<Vec<f32>> = (0..height)
             .into_par_iter()
             .map(|row| {
-                let mut random = ChaCha8Rng::seed_from_u64(self.seed * 1_000_003 + row as u64);
+                let mut normal = normal_numbers(self.seed * 1_000_003 + row as u64);
                 let pixel = |column: usize| {
                     let parts = [[-0.25, -0.25], [0.25, -0.25], [-0.25, 0.25], [0.25, 0.25]];
                     let seen = parts
@@ -50,7 +48,7 @@ impl Camera {
                     let along = column as f64 / width as f64;
                     let light = self.light[0] * (1.0 - along) + self.light[1] * along;
                     let value = light * 0.25 * seen.sum::<f64>();
-                    let noise: f64 = StandardNormal.sample(&mut random);
+                    let noise = normal();
                     let size = if self.photons {
                         self.noise * value.max(0.0).sqrt()
                     } else {

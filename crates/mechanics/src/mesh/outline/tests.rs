@@ -1,6 +1,7 @@
 use std::f64::consts::{PI, TAU};
 
 use super::*;
+use crate::statistics::normal_numbers;
 
 /// A grid of points over 150 × 50 with the spacing 5, where `keep` holds.
 fn grid(keep: impl Fn([f64; 2]) -> bool) -> Vec<[f64; 2]> {
@@ -256,12 +257,9 @@ fn small_grids_have_four_corners() {
 /// Markers a little off their grid leave the edge as sure as all of a row make it, and say how rough their rows are.
 #[test]
 fn edges_are_nearest_to_all_markers_of_their_rows() {
-    use rand::SeedableRng;
-    use rand_distr::{Distribution, Normal};
-    let off = Normal::new(0.0, 0.2).unwrap();
     for seed in 0..8 {
-        let mut random = rand_chacha::ChaCha8Rng::seed_from_u64(seed);
-        let moved = |point: [f64; 2]| point.map(|x| x + off.sample(&mut random));
+        let mut normal = normal_numbers(seed);
+        let moved = |point: [f64; 2]| point.map(|x| x + 0.2 * normal());
         let points: Vec<[f64; 2]> = grid(|_| true).into_iter().map(moved).collect();
         let traced = Outline::of_points(&points).unwrap();
         let outer = &traced.outline.outer;

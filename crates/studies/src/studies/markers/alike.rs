@@ -110,13 +110,10 @@ fn residuals((frame, estimate): (&Frame, &FieldEstimate)) -> BTreeMap<usize, [f6
 
 #[cfg(test)]
 mod tests {
-    use rand::SeedableRng;
-    use rand_chacha::ChaCha8Rng;
-    use rand_distr::{Distribution, StandardNormal};
-
     use super::*;
     use crate::estimation::{MarkerEstimate, NoiseCorrelation, Verdict};
     use crate::markers::Marker;
+    use crate::statistics::normal_numbers;
 
     const MARKERS: usize = 40;
 
@@ -166,17 +163,12 @@ mod tests {
     /// How many of 200 frames are not explained, each compared with a first frame that has the answer `first`. Both have noise of their own of
     /// size 1, that of the picture at rest of size `rest`, and a misfit of size `misfit` in common.
     fn count_unexplained(rest: f64, misfit: f64, first: Answer) -> usize {
-        let mut random = ChaCha8Rng::seed_from_u64(7);
+        let mut normal = normal_numbers(7);
         let frames = [frame(1), frame(2)];
         let mut count = 0;
         for _ in 0..200 {
             let mut noise = |size: f64| -> Vec<[f64; 2]> {
-                let mut one = || {
-                    size * <StandardNormal as Distribution<f64>>::sample(
-                        &StandardNormal,
-                        &mut random,
-                    )
-                };
+                let mut one = || size * normal();
                 (0..MARKERS).map(|_| [one(), one()]).collect()
             };
             let (at_rest, common, noises) = (noise(rest), noise(misfit), [noise(1.0), noise(1.0)]);

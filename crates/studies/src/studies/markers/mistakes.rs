@@ -292,15 +292,12 @@ fn criterion(estimate: &FieldEstimate) -> f64 {
 mod tests {
     use std::fmt::Write;
 
-    use rand::SeedableRng;
-    use rand_chacha::ChaCha8Rng;
-    use rand_distr::{Distribution, StandardNormal};
-
     use super::*;
     use crate::budget::Budget;
     use crate::estimation::Answer;
     use crate::markers::ReadSettings;
     use crate::mesh::CellShape;
+    use crate::statistics::normal_numbers;
     use crate::studies::markers::{Conditions, MeshSource, Request};
 
     /// The doubt about a strip of 60 mm × 20 mm with these stretches, written with a mistake or none, and the answer.
@@ -309,9 +306,8 @@ mod tests {
         noise: f64,
         mistake: Option<Mistake>,
     ) -> (Option<String>, Answer) {
-        let mut random = ChaCha8Rng::seed_from_u64(7);
-        let mut drawn =
-            || -> f64 { noise * Distribution::<f64>::sample(&StandardNormal, &mut random) };
+        let mut normal = normal_numbers(7);
+        let mut drawn = || noise * normal();
         let mut table = "x [mm],y [mm],ux [mm],uy [mm]\n".to_owned();
         for position in (0..13 * 5).map(|k| [5.0 * f64::from(k / 5), 5.0 * f64::from(k % 5)]) {
             let [ux, uy] = [
