@@ -43,6 +43,18 @@ pub fn extremes(values: impl IntoIterator<Item = f64>) -> [f64; 2] {
     })
 }
 
+/// What so many halvings leave of an interval, at whose first end a condition holds and at whose second one it does not.
+pub fn bisect(ends: [f64; 2], halvings: usize, holds: impl Fn(f64) -> bool) -> [f64; 2] {
+    (0..halvings).fold(ends, |[first, second], _| {
+        let middle = 0.5 * (first + second);
+        if holds(middle) {
+            [middle, second]
+        } else {
+            [first, middle]
+        }
+    })
+}
+
 /// The value of the largest magnitude, with its sign; zero where there are none. NaN is ignored.
 pub fn farthest(values: impl IntoIterator<Item = f64>) -> f64 {
     let farther = |most: f64, value: f64| {

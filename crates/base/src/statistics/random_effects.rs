@@ -8,7 +8,7 @@
 //! R. C. Paule, J. Mandel, J. Res. Natl. Bur. Stand. 87, 377 (1982), doi:10.6028/jres.087.022 (τ);
 //! G. Knapp, J. Hartung, Stat. Med. 22, 2693 (2003), doi:10.1002/sim.1482 (the interval of μ, with n − 1 degrees of freedom)
 
-use super::{Estimate, student_reach};
+use super::{Estimate, bisect, student_reach};
 
 /// The mean of some specimens and their spread.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,15 +38,9 @@ impl RandomEffects {
             (mean, sum, square.sum::<f64>())
         };
         // The weighted sum of squares falls as τ grows, and is below n − 1 where τ² is all of the scatter.
-        let [mut low, mut high] = [0.0, 2.0 * scatter];
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * (low + high);
-            if at(middle).2 > freedom {
-                low = middle;
-            } else {
-                high = middle;
-            }
-        }
+        let [_, high] = bisect([0.0, 2.0 * scatter], HALVINGS, |variance| {
+            at(variance).2 > freedom
+        });
         let (mean, sum, square) = at(high);
         Some(Self {
             mean,

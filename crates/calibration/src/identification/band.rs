@@ -15,7 +15,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::basis::{Basis, Form};
-use crate::statistics::{Estimate, larger, student_reach, student_tail};
+use crate::statistics::{Estimate, bisect, larger, student_reach, student_tail};
 
 /// An identified function.
 #[derive(Clone, Debug)]
@@ -110,14 +110,6 @@ pub fn reach(functions: &[Function; 2], freedom: f64) -> Option<[f64; 2]> {
             .map(|length| length * tube + 2.0 * student_tail(freedom, c))
             .sum()
     };
-    let (mut low, mut high) = (1.0, 40.0);
-    for _ in 0..100 {
-        let middle = 0.5 * (low + high);
-        if missed(middle) > MISSED {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    Some([point, high])
+    let [_, band] = bisect([1.0, 40.0], 100, |c| missed(c) > MISSED);
+    Some([point, band])
 }

@@ -1,5 +1,7 @@
 //! The discretisation error of a result from three meshes.
 
+use crate::statistics::bisect;
+
 /// The highest order that is trusted: that of a force by biquadratic elements on a smooth solution. A higher one is
 /// an accident of the three values, such as a change of sign of the error.
 const HIGHEST_ORDER: f64 = 4.0;
@@ -57,16 +59,8 @@ pub fn richardson([coarse, middle, fine]: [f64; 3]) -> Richardson {
 /// # References
 /// M. L. Williams, J. Appl. Mech. 19, 526 (1952)
 pub fn corner_exponent(angle: f64) -> f64 {
-    let [mut low, mut high] = [0.5, 1.0];
-    for _ in 0..60 {
-        let middle = 0.5 * (low + high);
-        if (middle * angle).sin() + middle * angle.sin() > 0.0 {
-            low = middle
-        } else {
-            high = middle
-        }
-    }
-    low
+    let is_below = |exponent: f64| (exponent * angle).sin() + exponent * angle.sin() > 0.0;
+    bisect([0.5, 1.0], 60, is_below)[0]
 }
 
 /// An error from the distance |f₂ₕ − fₕ| where no order above `most` is possible; at least `error`.

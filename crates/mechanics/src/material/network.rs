@@ -254,6 +254,7 @@ mod tests {
     use crate::material::Card;
     use crate::material::samples;
     use crate::material::sheet::{Kinematics, PlaneTensor};
+    use crate::statistics::bisect;
 
     /// Gels of all kinds whose swelling is known: φ is chosen and χ follows from it.
     ///
@@ -327,15 +328,7 @@ mod tests {
             let phi = 0.1 / l;
             modulus * (l * l - 0.5) / l + osmotic * ((1.0 - phi).ln() + phi + 0.45 * phi * phi)
         };
-        let [mut low, mut high] = [0.2, 10.0];
-        for _ in 0..200 {
-            let middle = 0.5 * (low + high);
-            if balance(middle) > 0.0 {
-                high = middle
-            } else {
-                low = middle
-            }
-        }
+        let [_, low] = bisect([10.0, 0.2], 200, |l| balance(l) > 0.0);
         let network = Network {
             modulus,
             chi: 0.45,

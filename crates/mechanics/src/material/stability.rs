@@ -19,6 +19,7 @@ use nalgebra::{Matrix2, Matrix3, Vector4};
 use super::curve::Mode;
 use super::law::HyperelasticLaw;
 use super::sheet::{Kinematics, PlaneTensor};
+use crate::statistics::bisect;
 
 /// The stretches within which stability is checked.
 pub const SEARCHED: [f64; 2] = [0.1, 10.0];
@@ -50,16 +51,7 @@ fn stable_until(law: &dyn HyperelasticLaw, mode: Mode, end: f64) -> f64 {
     let Some(first) = (1..=STEPS).find(|step| !stable(strain(*step))) else {
         return end;
     };
-    let (mut inside, mut outside) = (strain(first - 1), strain(first));
-    for _ in 0..40 {
-        let middle = 0.5 * (inside + outside);
-        if stable(middle) {
-            inside = middle;
-        } else {
-            outside = middle;
-        }
-    }
-    inside
+    bisect([first - 1, first].map(strain), 40, stable)[0]
 }
 
 /// Whether D is positive definite in a state, judged by D scaled to a unit diagonal because its entries may span more than the precision of numbers.

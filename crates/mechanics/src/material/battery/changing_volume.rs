@@ -3,6 +3,7 @@
 use super::*;
 use crate::material::sheet::PlaneState;
 use crate::material::volume::{Volume, VolumeEnergy, bulk_modulus};
+use crate::statistics::bisect;
 
 mod textbook;
 
@@ -52,15 +53,7 @@ fn split_sheets() -> NamedLaws {
 
 /// The root of a rising function between 0.2 and 5, by bisection.
 fn root(function: impl Fn(f64) -> f64) -> f64 {
-    let [mut low, mut high] = [0.2, 5.0];
-    for _ in 0..200 {
-        let middle = 0.5 * (low + high);
-        if function(middle) >= 0.0 {
-            high = middle
-        } else {
-            low = middle
-        }
-    }
+    let [high, low] = bisect([5.0, 0.2], 200, |x| function(x) >= 0.0);
     0.5 * (low + high)
 }
 

@@ -10,6 +10,7 @@ use crate::material::{HyperelasticLaw, NeoHooke, Ogden, SoftenedLaw, Softening, 
 use crate::mesh::{CellShape, Mesh, Shape};
 use crate::problem::{BoundaryProblem, Region, Support};
 use crate::solve::State;
+use crate::statistics::bisect;
 
 const SIZE: [f64; 2] = [24.0, 12.0];
 
@@ -94,15 +95,9 @@ fn forces_of_strips_in_parallel_add() {
 fn strips_in_series_carry_the_same_force() {
     let laws = laws();
     let stress = |law: usize, strain: f64| Mode::Planar.nominal_stress(&*laws[law], strain);
-    let (mut low, mut high) = (0.0, 0.8);
-    for _ in 0..200 {
-        let first = 0.5 * (low + high);
-        if stress(0, first) < stress(1, 0.8 - first) {
-            low = first;
-        } else {
-            high = first;
-        }
-    }
+    let [low, high] = bisect([0.0, 0.8], 200, |first| {
+        stress(0, first) < stress(1, 0.8 - first)
+    });
     let first = 0.5 * (low + high);
     let exact = 2.0 * SIZE[1] * stress(0, first);
     assert!(first > 0.5, "the soft half is stretched more: {first}");

@@ -11,6 +11,8 @@
 //! where p acts on the thickness at rest and the deformed length. For a given stretch of the bore, λ_θ(a), the slope λ_r(a) at
 //! which the outside is free is found by bisection; Runge and Kutta's method of fourth order integrates outward.
 
+use crate::statistics::bisect;
+
 /// Steps through the ring.
 const STEPS: usize = 500;
 
@@ -26,15 +28,9 @@ impl Ring<'_> {
     /// The pressure in MPa that stretches the bore so far, and the displacement of the outside in mm.
     pub fn pressure(&self, bore_stretch: f64) -> [f64; 2] {
         // The bore gets thinner radially: between nothing and what an unloaded circle has.
-        let (mut low, mut high) = (0.05, bore_stretch.powf(-0.5));
-        for _ in 0..60 {
-            let middle = 0.5 * (low + high);
-            if self.outside(bore_stretch, middle)[0] > 0.0 {
-                high = middle;
-            } else {
-                low = middle;
-            }
-        }
+        let [high, low] = bisect([bore_stretch.powf(-0.5), 0.05], 60, |radial| {
+            self.outside(bore_stretch, radial)[0] > 0.0
+        });
         let radial = 0.5 * (low + high);
         let pressure = -self.stresses([radial, bore_stretch])[0] / bore_stretch;
         let [_, position] = self.outside(bore_stretch, radial);

@@ -1,6 +1,7 @@
 //! The energies that the manuals of the codes give, with the parameters of an exported file.
 
 use super::*;
+use crate::statistics::bisect;
 
 /// What a code reads of a law: keyword, parameters in order (or points of a curve), and directions.
 pub(super) struct Exported {
@@ -190,15 +191,7 @@ pub(super) fn published(law: &Exported, sheet: &Sheet) -> f64 {
 /// Marlow's energy ∫ T dε to the strain of a strip with the same I₁; T is linear between points of stress and strain.
 pub(super) fn marlow(curve: &[f64], x: f64) -> f64 {
     let excess = |strain: f64| strain * strain * (3.0 + strain) / (1.0 + strain) - x;
-    let (mut low, mut high) = (0.0, 1e3);
-    for _ in 0..100 {
-        let middle = (low + high) / 2.0;
-        if excess(middle) < 0.0 {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
+    let [low, _] = bisect([0.0, 1e3], 100, |strain| excess(strain) < 0.0);
     let points: Vec<_> = curve.chunks_exact(2).collect();
     let mut energy = 0.0;
     for pair in points.windows(2) {
