@@ -3,6 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use serde::Serialize;
+use serde_json::Value;
 
 use super::terminal::{together, warn};
 use gelbench_base::document::file::MOST_OF_A_STUDY;
@@ -13,7 +15,7 @@ use gelbench_calibration::calibration::{self, TestData};
 const MOUNTING: &str = "Planar biaxial tests";
 
 /// What the files of test data do not say themselves.
-#[derive(Args)]
+#[derive(Args, Default, Serialize)]
 #[command(next_help_heading = "What the files do not state")]
 pub struct ReadingArguments {
     /// uniaxial, planar, equibiaxial, biaxial, compression or simple-shear; biaxial where strains are measured along two axes
@@ -118,6 +120,7 @@ pub struct ReadingArguments {
     preset: Option<String>,
     /// All files are one specimen, under several protocols; files of several specimens state `# specimen name: NAME` each
     #[arg(long)]
+    #[serde(rename = "specimen_name")]
     one_specimen: bool,
 }
 
@@ -127,55 +130,32 @@ impl ReadingArguments {
     /// # Errors
     /// [`Error::Input`] and [`Error::Write`] of the preset.
     pub fn reading(self) -> Result<Statements, Error> {
-        let preset = self.preset.clone();
         let stated = self.stated();
-        match preset {
+        match self.preset {
             None => Ok(stated),
             Some(name) => with_preset(&name, stated),
         }
     }
 
-    /// What the options say.
-    fn stated(self) -> Statements {
-        let given = [
-            self.test,
-            self.stress,
-            self.strain,
-            self.stress_unit,
-            self.strain_unit,
-            self.direction,
-            self.strain_ratio,
-            self.area,
-            self.length,
-            self.width,
-            self.thickness,
-            self.time_unit,
-            self.cycle,
-            self.zero,
-            self.ramp,
-            self.preconditioned,
-            Some(self.columns.join(",")).filter(|columns| !columns.is_empty()),
-            self.one_specimen.then(|| "one".to_owned()),
-            self.rows,
-            self.strain_range,
-            self.flip,
-            self.mounting,
-            self.tines,
-            self.tine_spacing,
-            self.tine_inset,
-            self.tine_diameter,
-            self.tine_bars,
-            self.arm_width,
-            self.fillet,
-            self.markers,
-            self.rest_state,
-            self.force_zero,
-        ];
-        let pairs = calibration::KEYS.into_iter().zip(given);
+    /// What the options say, each of which is called as its key.
+    fn stated(&self) -> Statements {
+        let options = serde_json::to_value(self).unwrap_or_default();
+        let stated = |key: &str| match &options[option(key)] {
+            Value::String(value) => Some(value.clone()),
+            Value::Array(_) => Some(self.columns.join(",")).filter(|columns| !columns.is_empty()),
+            Value::Bool(true) => Some("one".to_owned()),
+            _ => None,
+        };
+        let pairs = calibration::KEYS.into_iter();
         pairs
-            .filter_map(|(key, value)| Some((key.to_owned(), value?)))
+            .filter_map(|key| Some((key.to_owned(), stated(key)?)))
             .collect()
     }
+}
+
+/// The name of the option that states a key of test data.
+fn option(key: &str) -> String {
+    key.replace(" measure", "").replace(' ', "_")
 }
 
 /// Statements with those of a preset, which is a file of the lines that the head of a table may have; it is written from the statements where
@@ -234,4 +214,19 @@ pub fn read_tests(files: &[PathBuf], reading: &Statements) -> Result<Vec<TestDat
     calibration::refuse_repeated(&tests)?;
     tests.iter().for_each(|test| warn(&test.warnings));
     Ok(tests)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_key_has_an_option_and_each_option_but_the_preset_a_key() {
+        let options = serde_json::to_value(ReadingArguments::default()).unwrap();
+        for key in calibration::KEYS {
+            assert!(options.get(option(key)).is_some(), "{key}");
+        }
+        let count = options.as_object().map(serde_json::Map::len);
+        assert_eq!(count, Some(calibration::KEYS.len() + 1));
+    }
 }
