@@ -79,8 +79,8 @@ impl MaterialCard {
             let statement = NewValue::Text(statement.to_owned());
             document.set(key, &statement).map_err(refused)?;
         }
-        let text = without_fit(&document.text());
-        Card::parse(&card.name, &format!("{}.toml", card.name), &text)
+        document.remove("fit");
+        Card::parse(&card.name, &format!("{}.toml", card.name), &document.text())
     }
 
     /// The card that a study has read, whose sheet is in the state that it asks for, by the name of this one.
@@ -139,20 +139,6 @@ pub fn watched(card: Card, watch: &Arc<Watch>) -> Card {
         law: Watched::law(&card.law, watch),
         ..card
     }
-}
-
-/// The text of a card without the record of its fit and without comments, which refer to it.
-fn without_fit(text: &str) -> String {
-    let mut kept = true;
-    let of_others = text.lines().filter(|line| {
-        if line.starts_with('[') {
-            kept = line.trim() != "[fit]";
-        }
-        kept && !line.starts_with('#')
-    });
-    let without_errors =
-        of_others.map(|line| line.split(" # standard error").next().unwrap_or(line));
-    without_errors.map(|line| format!("{line}\n")).collect()
 }
 
 #[pymethods]
