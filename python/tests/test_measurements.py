@@ -332,8 +332,11 @@ def test_lists_of_paths_and_arrays_without_heads_are_fitted(root, tmp_path):
     stretch = np.linspace(1.01, 1.6, 30)
     stress = 60 * (stretch - stretch**-2)
     for number in (1, 2):
-        np.savetxt(tmp_path / f"{number}.csv", np.column_stack([stretch, stress]), delimiter=",", header="stretch [-],nominal stress [kPa]", comments="")
+        rows = np.column_stack([stretch, (1 + 1e-4 * number) * stress])
+        np.savetxt(tmp_path / f"{number}.csv", rows, delimiter=",", header="stretch [-],nominal stress [kPa]", comments="")
     said = dict(law="neo-hooke", test="uniaxial")
+    with pytest.raises(gb.InputError, match="given twice"):
+        gb.fit([str(tmp_path / "1.csv")] * 2, **said)
     of_files = gb.fit([str(tmp_path / "1.csv"), str(tmp_path / "2.csv")], **said)
     of_array = gb.fit(np.column_stack([stretch - 1, stress]), **said, strain="nominal", stress="nominal", stress_unit="kPa")
     for found in (of_files, of_array):
