@@ -321,10 +321,8 @@ fn run_study(path: &Path, folder: Option<PathBuf>, budget: Budget) -> Outcome {
         .or_else(|| ready.output.folder.clone())
         .unwrap_or_else(usual);
     let identity = interrupt::identity(&format!("{path:?} {budget:?}"));
-    let results_folder = interrupt::guarded(
-        || ResultFolder::resume(&folder, "run", &[path], &identity),
-        |folder| folder,
-    )?;
+    let results_folder =
+        interrupt::guarded(|| ResultFolder::resume(&folder, "run", &[path], &identity))?;
     ready.warnings.extend(results_folder.replaces());
     let journal = FolderJournal::open(results_folder);
     ready.warnings.extend(journal.warning());

@@ -100,10 +100,7 @@ pub fn run(options: Options) -> Outcome {
     print_report(|| json(&compared, &differences, &doubts, &options.field))?;
     if let Some(folder) = &options.output {
         let inputs = [&*options.study, &*options.field];
-        let mut results = interrupt::guarded(
-            || ResultFolder::open(folder, "compare", &inputs),
-            |folder| folder,
-        )?;
+        let mut results = interrupt::guarded(|| ResultFolder::open(folder, "compare", &inputs))?;
         warn(results.replaces().as_slice());
         warn(&write(
             &compared,

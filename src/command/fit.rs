@@ -242,10 +242,9 @@ impl Written<'_> {
             &[&png, &svg, &pdf, &json].map(|name| folder.join(name)),
         )?;
         let inputs: Vec<&Path> = self.data.iter().map(PathBuf::as_path).collect();
-        let mut results = interrupt::guarded(
-            || ResultFolder::open(folder, &format!("materials fit {stem}"), &inputs),
-            |folder| folder,
-        )?;
+        let mut results = interrupt::guarded(|| {
+            ResultFolder::open(folder, &format!("materials fit {stem}"), &inputs)
+        })?;
         let provenance = Provenance {
             files,
             reading: self.reading,

@@ -119,10 +119,9 @@ fn write(
     groups: &[NamedGroup],
 ) -> Result<(), Error> {
     let inputs: Vec<&Path> = files.iter().map(PathBuf::as_path).collect();
-    let mut results = interrupt::guarded(
-        || ResultFolder::open(folder, &format!("materials group {name}"), &inputs),
-        |folder| folder,
-    )?;
+    let mut results = interrupt::guarded(|| {
+        ResultFolder::open(folder, &format!("materials group {name}"), &inputs)
+    })?;
     results.add(&format!("{name}.csv"), group_table(groups).as_bytes())?;
     for entry in groups {
         let stem = format!("{name}-{}", entry.name);

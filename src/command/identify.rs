@@ -113,10 +113,8 @@ pub fn run(options: Options) -> Outcome {
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     let usual = || Path::new("output").join(&*stem);
     let folder = options.output.unwrap_or_else(usual);
-    let mut results = interrupt::guarded(
-        || ResultFolder::open(&folder, &format!("identify {stem}"), &[&path]),
-        |folder| folder,
-    )?;
+    let mut results =
+        interrupt::guarded(|| ResultFolder::open(&folder, &format!("identify {stem}"), &[&path]))?;
     warn(results.replaces().as_slice());
     let progress = Progress::of(0);
     let identification = identify(&recording, settings, &|what| progress.report(what))?;

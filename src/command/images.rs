@@ -101,10 +101,7 @@ pub fn track(options: TrackOptions) -> Outcome {
             .chain(options.options.mask()),
     );
     let inputs: Vec<&Path> = inputs.iter().map(PathBuf::as_path).collect();
-    let mut folder = interrupt::guarded(
-        || ResultFolder::open(&options.output, "track", &inputs),
-        |folder| folder,
-    )?;
+    let mut folder = interrupt::guarded(|| ResultFolder::open(&options.output, "track", &inputs))?;
     warn(folder.replaces().as_slice());
     let progress = Progress::of(files.len() as u64);
     let request = ImageRequest {

@@ -39,18 +39,16 @@ pub fn guard(folder: &ResultFolder) {
     *unfinished = Some(folder.unfinished());
 }
 
-/// Opens results whose unfinished files an interrupt removes, in the folder that `folder` names; an interrupt that comes meanwhile waits
-/// until they are open.
+/// Opens results whose unfinished files an interrupt removes; one that comes meanwhile waits until they are open.
 ///
 /// # Errors
 /// Those of opening them.
-pub fn guarded<T>(
+pub fn guarded<T: AsRef<ResultFolder>>(
     open: impl FnOnce() -> Result<T, Error>,
-    folder: impl FnOnce(&T) -> &ResultFolder,
 ) -> Result<T, Error> {
     let mut unfinished = UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner);
     let opened = open()?;
-    *unfinished = Some(folder(&opened).unfinished());
+    *unfinished = Some(opened.as_ref().unfinished());
     Ok(opened)
 }
 

@@ -107,7 +107,7 @@ pub fn run(options: Options) -> Outcome {
         .collect();
     let program = std::env::current_exe().ok();
     let open = || SweepFolder::open(&sweep, share, &root, &inputs, program.as_deref());
-    let mut folder = interrupt::guarded(open, SweepFolder::results)?;
+    let mut folder = interrupt::guarded(open)?;
     warn(folder.replaces().as_slice());
     let progress = Progress::of(folder.count() as u64);
     progress.report("studies of all runs, read and checked before the first");
@@ -117,7 +117,7 @@ pub fn run(options: Options) -> Outcome {
     };
     let rows = folder.rows(&ended, &|| ())?;
     drop(progress);
-    let position = folder.results().path().to_owned();
+    let position = folder.as_ref().path().to_owned();
     let (files, warnings) = folder.finish(&rows)?;
     warn(&warnings);
     warn_texts(sweep::cautions(&rows));

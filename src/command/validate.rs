@@ -28,10 +28,8 @@ pub fn run(names: &[String], quick: bool, folder: Option<PathBuf>) -> Outcome {
     let folder = &folder.unwrap_or_else(usual);
     let statement = format!("validate {names:?} {quick}");
     let identity = interrupt::identity(&statement);
-    let mut results = interrupt::guarded(
-        || ResultFolder::resume(folder, "validate", &[], &identity),
-        |folder| folder,
-    )?;
+    let mut results =
+        interrupt::guarded(|| ResultFolder::resume(folder, "validate", &[], &identity))?;
     warn(validation_time(&chosen).as_slice());
     let progress = Progress::of(chosen.len() as u64);
     let mut cases = Vec::new();

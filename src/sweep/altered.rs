@@ -102,10 +102,10 @@ impl BaseStudy {
         let mut files = Vec::new();
         for card in cards.iter().filter(|card| card.is_varied) {
             let name = NewValue::Text(card.position.to_string_lossy().into_owned());
-            let mut place: Vec<&str> = card.section.iter().map(String::as_str).collect();
-            place.push("card");
-            let named = study.set(&place, &name);
-            named.map_err(|reason| no_place(&place.join("."), reason))?;
+            let mut key: Vec<&str> = card.section.iter().map(String::as_str).collect();
+            key.push("card");
+            let named = study.set(&key, &name);
+            named.map_err(|reason| no_place(&key.join("."), reason))?;
             let path = folder.join(&card.position);
             let plain = path.strip_prefix(".").unwrap_or(&path).to_owned();
             files.push((plain, card.document.text().into_bytes()));
@@ -163,8 +163,8 @@ impl VariedCard {
     }
 
     fn load(study: &EditedDocument, section: &[&str], folder: &Path) -> Result<Self, Error> {
-        let place = [section, &["card"]].concat();
-        let name = study.text_of(&place).ok_or_else(|| {
+        let key = [section, &["card"]].concat();
+        let name = study.text_of(&key).ok_or_else(|| {
             Error::input(
                 "a parameter of the card is varied, but the study names no card",
                 "give it [material] card = …, or vary keys of the study",
@@ -269,9 +269,9 @@ mod tests {
             "{study}"
         );
         let (study, files) = set(&[["material.1.c10", "0.25 MPa"]]).unwrap();
-        let own = "card = \"gelbench-sweep-card-1.toml\"";
+        let varied = "card = \"gelbench-sweep-card-1.toml\"";
         assert!(
-            study.contains(own) && study.contains("card = \"neo-hooke\""),
+            study.contains(varied) && study.contains("card = \"neo-hooke\""),
             "{study}"
         );
         let [(path, text)] = &files[..] else {

@@ -62,6 +62,12 @@ pub struct SweepFolder<'a> {
     results: ResultFolder,
 }
 
+impl AsRef<ResultFolder> for SweepFolder<'_> {
+    fn as_ref(&self) -> &ResultFolder {
+        &self.results
+    }
+}
+
 impl<'a> SweepFolder<'a> {
     /// Opens the folder, with the runs that the same sweep by the same `program` has left when it was interrupted.
     /// The results follow from the files `inputs`, and must not replace them.
@@ -95,11 +101,6 @@ impl<'a> SweepFolder<'a> {
             runs,
             results: ResultFolder::resume(&folder, "sweep", inputs, &identity)?,
         })
-    }
-
-    /// The folder.
-    pub fn results(&self) -> &ResultFolder {
-        &self.results
     }
 
     /// A warning where the folder contains other results of sweeps: those of another study or of other keys.

@@ -226,7 +226,7 @@ fn a_computation_that_is_broken_off_leaves_the_runs_that_have_ended() {
     let ended = pushed.into_inner().unwrap();
     assert!((2..6).contains(&ended.len()), "{ended:?}");
     let mut folder = open();
-    let parts = folder.results().unfinished().partial.join(".parts");
+    let parts = folder.as_ref().unfinished().partial.join(".parts");
     for number in &ended {
         assert!(parts.join(number.to_string()).is_file(), "run {number}");
     }

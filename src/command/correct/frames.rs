@@ -20,10 +20,8 @@ use gelbench_studies::studies::markers::{ComparedFrames, MarkerStudy};
 pub fn correct(field: &mut MarkerStudy, job: Job) -> Result<(Vec<FieldEstimate>, Results), Error> {
     let inputs: Vec<&Path> = job.inputs.iter().map(PathBuf::as_path).collect();
     let identity = interrupt::identity(&job.arguments);
-    let mut folder = interrupt::guarded(
-        || ResultFolder::resume(&job.folder, "correct", &inputs, &identity),
-        |folder| folder,
-    )?;
+    let mut folder =
+        interrupt::guarded(|| ResultFolder::resume(&job.folder, "correct", &inputs, &identity))?;
     warn(folder.replaces().as_slice());
     let progress = Progress::of(field.series.frames.len() as u64);
     let start = Instant::now();

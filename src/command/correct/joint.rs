@@ -31,10 +31,7 @@ pub fn run(options: Options, mut job: Job) -> Outcome {
         warn(&specimen.warnings);
     }
     let inputs: Vec<&Path> = job.inputs.iter().map(PathBuf::as_path).collect();
-    let folder = interrupt::guarded(
-        || ResultFolder::open(&job.folder, "correct", &inputs),
-        |folder| folder,
-    )?;
+    let folder = interrupt::guarded(|| ResultFolder::open(&job.folder, "correct", &inputs))?;
     let start = Instant::now();
     let progress = Progress::of(0);
     let estimate = study.estimate(&|action| progress.report(action))?;

@@ -114,8 +114,8 @@ fn number(field: &str) -> Option<f64> {
 /// A time as clocks show it, `01:02:03.5` or `01:02:03,5`, in s.
 fn clock_time(field: &str) -> Option<f64> {
     let mut parts = field.split(':');
-    let whole = |part: &str| part.parse::<u16>().ok().map(f64::from);
-    let (hours, minutes) = (whole(parts.next()?)?, whole(parts.next()?)?);
+    let integer = |part: &str| part.parse::<u16>().ok().map(f64::from);
+    let (hours, minutes) = (integer(parts.next()?)?, integer(parts.next()?)?);
     let seconds = parts.next().and_then(number)?;
     let is_time = minutes < 60.0 && (0.0..60.0).contains(&seconds) && parts.next().is_none();
     is_time.then_some(3600.0 * hours + 60.0 * minutes + seconds)

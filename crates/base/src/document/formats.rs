@@ -79,10 +79,11 @@ pub(super) fn tables(
 }
 
 fn of_archive(bytes: &[u8], part: Option<&str>) -> Result<Vec<TableText>, Unconvertible> {
-    let archive = Archive::open(bytes)?;
+    let mut archive = Archive::open(bytes)?;
     let names = archive.names();
     let are_arrays = !names.is_empty() && names.iter().all(|name| name.ends_with(".npy"));
     if names.iter().any(|name| name.ends_with("workbook.xml")) {
+        spreadsheet::check(&mut archive)?;
         spreadsheet::tables(bytes, part)
     } else if are_arrays {
         arrays::of_npz(archive, part)

@@ -17,12 +17,11 @@ const AGAIN: &str = "save it again, or save the sheet as .csv";
 /// Rows and columns of the largest sheet that there can be.
 const LARGEST: [usize; 2] = [1 << 20, 1 << 14];
 
-/// The sheets in their order, or the one with a name.
+/// The sheets of a workbook that was checked in their order, or the one with a name.
 ///
 /// # Errors
 /// [`Unconvertible`] where there is no sheet of this name, or a part is damaged or too large.
 pub(super) fn tables(bytes: &[u8], part: Option<&str>) -> Result<Vec<TableText>, Unconvertible> {
-    check(&mut Archive::open(bytes)?)?;
     let mut workbook = Xlsx::new(Cursor::new(bytes)).map_err(damaged)?;
     let sheets = workbook.sheets_metadata().iter();
     let sheets = sheets.filter(|sheet| sheet.typ == SheetType::WorkSheet);
@@ -48,7 +47,10 @@ pub(super) fn tables(bytes: &[u8], part: Option<&str>) -> Result<Vec<TableText>,
 
 /// Unpacks all parts once: each is as large as the archive states and has room, and so have the texts whose number a part states, for
 /// which room is made before they are read.
-fn check(archive: &mut Archive) -> Result<(), Unconvertible> {
+///
+/// # Errors
+/// [`Unconvertible`] where one is damaged or too large.
+pub(super) fn check(archive: &mut Archive) -> Result<(), Unconvertible> {
     for name in archive.names() {
         let part = archive.read(&name)?;
         let text = String::from_utf8_lossy(&part);

@@ -98,9 +98,9 @@ fn points(path: &Path, settings: &ReadSettings) -> Result<(Vec<Point>, Table), E
     };
     let point = |(row, _): &(Vec<f64>, _)| {
         let number = name.map(|column| row[column]);
-        let whole = number.filter(|number| *number >= 0.0 && number.fract() == 0.0);
+        let integer = number.filter(|number| *number >= 0.0 && number.fract() == 0.0);
         (
-            whole.map(|number| number as u64),
+            integer.map(|number| number as u64),
             [row[x.0] * x.1, up * row[y.0] * y.1],
         )
     };

@@ -58,6 +58,12 @@ pub struct ResultFolder {
     looked_at: usize,
 }
 
+impl AsRef<Self> for ResultFolder {
+    fn as_ref(&self) -> &Self {
+        self
+    }
+}
+
 impl ResultFolder {
     /// Makes and locks a folder for results of the command `writer`, such as `run`, that follow from `inputs`.
     ///

@@ -1,5 +1,6 @@
 use super::*;
 use crate::document::archive::stored;
+use crate::document::formats::tables;
 
 /// The text of a workbook's only sheet with some rows.
 fn sheet(rows: &str) -> Result<String, Unconvertible> {
@@ -35,8 +36,8 @@ fn sheet(rows: &str) -> Result<String, Unconvertible> {
             <cellStyleXfs><xf numFmtId="14"/></cellStyleXfs><cellXfs><xf numFmtId="0"/><xf numFmtId="164"/><xf numFmtId="22"/></cellXfs></styleSheet>"#,
         ),
     ]);
-    let mut tables = tables(&bytes, None)?;
-    Ok(tables.remove(0).text)
+    let sheets = tables(&bytes, None)?.unwrap();
+    Ok(sheets.into_iter().next().unwrap().text)
 }
 
 #[test]
@@ -104,7 +105,7 @@ fn a_number_of_texts_that_cannot_be_is_refused() {
             r#"<!-- uniqueCount="1" --><sst uniqueCount = '999999999999'/>"#,
         ),
     ] {
-        let refused = tables(&stored(&[(name, texts)]), None).unwrap_err();
+        let refused = tables(&stored(&[("xl/workbook.xml", ""), (name, texts)]), None).unwrap_err();
         assert!(refused.message.contains("999999999999"), "{refused:?}");
     }
 }

@@ -338,9 +338,8 @@ fn passes(values: &[f64], wanted: f64) -> Option<(usize, f64)> {
     let step = |row: usize| {
         let (from, to) = (values[row], values[row + 1]);
         let share = (wanted - from) / (to - from);
-        (-ROUNDING..=1.0 + ROUNDING)
-            .contains(&share)
-            .then_some((row, share))
+        let is_within = (-ROUNDING..=1.0 + ROUNDING).contains(&share);
+        is_within.then_some((row, share.clamp(0.0, 1.0)))
     };
     (0..values.len().saturating_sub(1)).find_map(step)
 }

@@ -24,13 +24,16 @@ pub fn refuse_repeated(tests: &[TestData]) -> Result<(), Error> {
     Ok(())
 }
 
+fn times(data: &TestData) -> Option<&[f64]> {
+    data.known_times().ok().flatten()
+}
+
 /// Whether two tests are one, whatever their files are called: no measurement is repeated to the last digit.
 fn are_same(one: &TestData, other: &TestData) -> bool {
     let row = |one: &Observation| {
         let [first, second] = one.strains;
         ([first, second, one.stress].map(f64::to_bits), one.axis)
     };
-    let times = |data: &TestData| data.known_times().ok().flatten().map(<[f64]>::to_vec);
     let rows = one.observations.iter().map(row);
     one.test == other.test
         && rows.eq(other.observations.iter().map(row))

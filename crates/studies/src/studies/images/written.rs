@@ -184,8 +184,8 @@ fn findings(tracked: &TrackedImages, contradicted: Option<&Diagnostic>) -> Vec<F
     // Where neither outline nor mask is given, the specimen seldom covers less than one in so many of the image's points.
     const LEAST: usize = 4;
     let frames = &tracked.series.frames;
-    let found = frames.iter().map(|frame| frame.markers.len()).max();
-    let most = found.unwrap_or(0).max(tracked.points() / LEAST);
+    let tracked_points = frames.iter().map(|frame| frame.markers.len()).max();
+    let most = tracked_points.unwrap_or(0).max(tracked.points() / LEAST);
     let has_few = |frame: &&Frame| ((most - frame.markers.len()) as f64) > MANY * most as f64;
     let all: Vec<usize> = frames.iter().map(|frame| frame.number).collect();
     let few: Vec<usize> = frames

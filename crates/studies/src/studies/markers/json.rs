@@ -54,9 +54,9 @@ pub fn step(field: &MarkerStudy, frame: &Frame, estimate: &FieldEstimate) -> Ste
 
 fn of_frame(field: &MarkerStudy, frame: &Frame, estimate: &FieldEstimate) -> Value {
     let of = |value: &Estimate| of_estimate(value, estimate.has_intervals());
-    let found = estimate.parameters.iter();
+    let estimated = estimate.parameters.iter();
     let parameters =
-        found.map(|(key, unit, value)| json!({ "key": key, "unit": unit, "found": of(value) }));
+        estimated.map(|(key, unit, value)| json!({ "key": key, "unit": unit, "found": of(value) }));
     let checks = estimate.force_checks.iter().map(|check| {
         json!({
             "edge": check.measured.edge,

@@ -205,16 +205,16 @@ fn of_markers(request: &Request, field: &MarkerFiles) -> Result<SpecimenMesh, Er
 /// The positions of all markers, from which the outline is traced, without the lost markers that lie in holes among the others, if gaps are
 /// holes; and the number of these. Where so many are lost that the others are scattered, gaps are not taken for holes.
 fn positions(series: &MarkerSeries, gaps_are_holes: bool) -> (Vec<[f64; 2]>, usize) {
-    let found = series.tracked_positions();
+    let tracked = series.tracked_positions();
     let mut lost = series.lost.clone();
     if gaps_are_holes && !lost.is_empty() {
-        let outline = Outline::of_points(&found).ok();
+        let outline = Outline::of_points(&tracked).ok();
         if let Some(traced) = outline.filter(|traced| !traced.is_scattered) {
             lost.retain(|position| !traced.outline.has_in_a_hole(*position));
         }
     }
     let in_gaps = series.lost.len() - lost.len();
-    (found.into_iter().chain(lost).collect(), in_gaps)
+    (tracked.into_iter().chain(lost).collect(), in_gaps)
 }
 
 /// A mesh inside an outline, and the size of its cells in mm. If no size is given, its nodes are as far apart as the markers, but at least 16 cells

@@ -31,8 +31,8 @@ struct Instance {
     part: String,
     /// The line of the file.
     line: usize,
-    /// The place of its own contents.
-    own: usize,
+    /// The index of what stands within it.
+    contents: usize,
     translation: [f64; 3],
     rotation: Option<Rotation>,
 }
@@ -52,27 +52,27 @@ impl Assembly {
 
     /// Begins an instance of a part.
     pub fn begin_instance(&mut self, name: &str, part: &str, line: usize) {
-        let own = self.begin(None);
+        let contents = self.begin(None);
         self.instances.push(Instance {
             name: name.to_owned(),
             part: part.to_uppercase(),
             line,
-            own,
+            contents,
             translation: [0.0; 3],
             rotation: None,
         });
     }
 
-    /// Begins contents; returns their place.
+    /// Begins contents; returns their index.
     fn begin(&mut self, part: Option<String>) -> usize {
-        let place = self.contents.len();
+        let index = self.contents.len();
         self.contents.push(Contents {
             part,
             nodes: Vec::new(),
             has_elements: false,
         });
-        self.open = Some(place);
-        place
+        self.open = Some(index);
+        index
     }
 
     /// Ends a part or an instance.
@@ -152,10 +152,10 @@ impl Assembly {
     /// What stands within an instance, and within its part.
     fn within<'a>(&'a self, instance: &'a Instance) -> impl Iterator<Item = &'a Contents> {
         let contents = self.contents.iter().enumerate();
-        let is_of = move |place: usize, contents: &Contents| {
-            place == instance.own || contents.part.as_ref() == Some(&instance.part)
+        let is_of = move |index: usize, contents: &Contents| {
+            index == instance.contents || contents.part.as_ref() == Some(&instance.part)
         };
-        contents.filter_map(move |(place, contents)| is_of(place, contents).then_some(contents))
+        contents.filter_map(move |(index, contents)| is_of(index, contents).then_some(contents))
     }
 }
 
