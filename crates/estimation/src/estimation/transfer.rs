@@ -89,17 +89,19 @@ pub fn transfer(
     })
 }
 
-/// The values of the held unknowns.
+/// The values of the held unknowns. Where edges meet, known displacements take precedence over rigid ones and these over unknown ones.
 fn imposed(mesh: &Mesh, edges: &[Edge], start: &[f64]) -> Vec<Option<f64>> {
-    let mut imposed = vec![None; start.len()];
+    let mut imposed: Vec<Option<f64>> = vec![None; start.len()];
     let mut impose = |node: usize, values: [Option<f64>; 2]| {
         for (axis, value) in values.into_iter().enumerate() {
-            imposed[2 * node + axis] = value.or(imposed[2 * node + axis]);
+            imposed[2 * node + axis] = imposed[2 * node + axis].or(value);
         }
     };
+    let mut ranked: Vec<&Edge> = edges.iter().collect();
+    ranked.sort_by_key(|edge| edge.condition.rank());
     for Edge {
         segment, condition, ..
-    } in edges
+    } in ranked
     {
         match condition {
             EdgeCondition::Free => {}

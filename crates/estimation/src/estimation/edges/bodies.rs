@@ -103,11 +103,7 @@ fn hold(mesh: &Mesh, edges: &[(&Segment, EdgeCondition)], members: &[usize]) -> 
         _ => true,
     };
     Hold {
-        rank: match condition {
-            EdgeCondition::Known(_) => 0,
-            EdgeCondition::Rigid => 1,
-            EdgeCondition::Unknown | EdgeCondition::Free => 2,
-        },
+        rank: condition.rank(),
         nodes: [0, 1].map(|axis| nodes_of(&|_| holds(axis))),
         sides: Hold::sides(mesh, &nodes_of(&|segment| !segment.inside)),
     }

@@ -126,6 +126,17 @@ pub enum EdgeCondition {
     Unknown,
 }
 
+impl EdgeCondition {
+    /// Where edges meet, the one with the least rank moves the node.
+    pub(in crate::estimation) fn rank(self) -> usize {
+        match self {
+            Self::Known(_) => 0,
+            Self::Rigid => 1,
+            Self::Unknown | Self::Free => 2,
+        }
+    }
+}
+
 impl Knowledge {
     /// The measured forces that the field includes.
     pub(in crate::estimation) fn measured_forces(&self) -> &[MeasuredForce] {
