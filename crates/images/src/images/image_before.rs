@@ -18,7 +18,8 @@ fn pixel_at([x, y]: [f64; 2], size: [usize; 2]) -> Option<[usize; 2]> {
 
 impl Tracker {
     /// Finds the points that were not found from the first image, by following them from the image before. Where the first image's pattern
-    /// is then found after all, the match is with the first image; otherwise the covariances of both steps add up.
+    /// is then found after all, the match is with the first image; otherwise the covariances of both steps add up. The step of a point that was
+    /// last found in an earlier image is not known as a whole: it must be found from the first image.
     pub(super) fn follow_from_image_before(
         &self,
         image: &GreyImage,
@@ -49,7 +50,7 @@ impl Tracker {
         };
         // The steps of the points that were found lead to those of their lost neighbours.
         let known_step = |point: usize| {
-            centres[point]?;
+            centres[point].filter(|_| self.was_found[point])?;
             found[point]?.since(before[point].as_ref()?)
         };
         let mut steps: Vec<Option<Match>> = (0..found.len()).map(known_step).collect();
@@ -67,7 +68,8 @@ impl Tracker {
                     .as_ref()?
                     .followed_by(&steps[point]?, point_at_rest, centre);
             let again = direct.find(point, spline, indirect.warp);
-            Some((point, again.unwrap_or(indirect)))
+            let indirect = Some(indirect).filter(|_| self.was_found[point]);
+            Some((point, again.or(indirect)?))
         });
         let solved: Vec<(usize, Match)> = solved.collect();
         for (point, solution) in solved {

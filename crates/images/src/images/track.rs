@@ -56,6 +56,8 @@ pub struct Tracker {
     pub(super) spacing: usize,
     /// The image before, and where each point was last found.
     pub(super) before: Option<(GreyImage, Vec<Option<Match>>)>,
+    /// Whether each point was found in the image before, rather than in an earlier one.
+    pub(super) was_found: Vec<bool>,
     pub(super) warnings: Vec<Diagnostic>,
     pub(super) patch_layout: OnceLock<PatchLayout>,
 }
@@ -122,6 +124,7 @@ impl Tracker {
             dead,
             spacing: settings.spacing.max(1),
             before: None,
+            was_found: Vec::new(),
             warnings,
             patch_layout: OnceLock::new(),
         })
@@ -199,6 +202,7 @@ impl Tracker {
         if self.order == Order::Affine {
             add_curvature(&self.grid, self.spacing, self.half, &mut tracked);
         }
+        self.was_found = matches.iter().map(Option::is_some).collect();
         if let Some((_, before)) = self.before.take() {
             for (found, last_found) in matches.iter_mut().zip(before) {
                 *found = found.or(last_found);
