@@ -306,35 +306,45 @@ pub fn out_of_plane(table: &Table, names: [Names; 2], ignored: &[String]) -> Vec
     indices.into_iter().flatten().filter(wanted).collect()
 }
 
-/// Checks that the points stay in a plane: heights differ by less than a hundredth of the field's size, and no
-/// displacement out of the plane is more than a hundredth of the largest one.
+/// Checks that the points of the rows that `is_found` chooses stay in a plane: heights differ by less than a hundredth of the field's
+/// size, and no displacement out of the plane is more than a hundredth of the largest one. Both are compared in the unit of the columns
+/// in the plane.
 ///
 /// # Errors
 /// [`Error::Input`] with how far they leave it.
 pub fn check_flat(
     table: &Table,
-    positions: [usize; 2],
-    displacements: [usize; 2],
+    [positions, displacements]: [[Length; 2]; 2],
     names: [Names; 2],
     ignored: &[String],
+    is_found: impl Fn(&[f64]) -> bool,
 ) -> Result<(), Error> {
     const FLAT: f64 = 0.01;
     let range = |column: usize| {
-        let values = table.rows.iter().map(|(row, _)| row[column]);
+        let rows = table.rows.iter().filter(|(row, _)| is_found(row));
+        let values = rows.map(|(row, _)| row[column]);
         extremes(values.filter(|value| value.is_finite()))
     };
     let span = |column: usize| range(column)[1] - range(column)[0];
     let largest = |column: usize| range(column)[1].max(-range(column)[0]);
-    let size = positions.map(span).into_iter().fold(0.0, f64::max);
-    let motion = displacements.map(largest).into_iter().fold(0.0, f64::max);
+    let size = positions.map(|(column, unit)| span(column) * unit / positions[0].1);
+    let motion = displacements.map(|(column, unit)| largest(column) * unit / displacements[0].1);
+    let [size, motion] = [size, motion].map(|both| both.into_iter().fold(0.0, f64::max));
+    // The unit of a head over that of a column in the plane: 1 where it is the same, or not stated.
+    let ratio = |column: usize, (plane, unit): Length| {
+        let head =
+            unit_of(table, column).filter(|head| unit_of(table, plane).as_ref() != Some(head));
+        head.and_then(|head| millimetres(&head))
+            .map_or(1.0, |own| own / unit)
+    };
     for column in out_of_plane(table, names, ignored) {
         let name = &table.columns[column].name;
-        let [off, most, what] = if find(table, names[1]).is_some_and(|(lift, _)| lift == column) {
-            [largest(column) / motion, largest(column), motion]
+        let [most, what] = if find(table, names[1]).is_some_and(|(lift, _)| lift == column) {
+            [largest(column) * ratio(column, displacements[0]), motion]
         } else {
-            [span(column) / size, span(column), size]
+            [span(column) * ratio(column, positions[0]), size]
         };
-        if off > FLAT {
+        if most / what > FLAT {
             let message = format!(
                 "the points do not stay in a plane: `{name}` reaches {most:.4} compared with {what:.4} in the plane"
             );

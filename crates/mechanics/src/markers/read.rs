@@ -41,6 +41,7 @@ pub fn read(files: &[PathBuf], settings: &ReadSettings) -> Result<MarkerFiles, E
             _ => on_mesh::read(group[0], settings)?,
         };
         if several {
+            check_one_frame(&file_rows, group[0])?;
             for row in &mut file_rows.rows {
                 row.frame = Some(number);
             }
@@ -63,6 +64,21 @@ pub fn read(files: &[PathBuf], settings: &ReadSettings) -> Result<MarkerFiles, E
         understood,
         warnings,
     })
+}
+
+/// Refuses a file of several frames beside others, because each of several files is one frame.
+fn check_one_frame(read: &FileRows, file: &Path) -> Result<(), Error> {
+    let frames: BTreeSet<Option<usize>> = read.rows.iter().map(|row| row.frame).collect();
+    if frames.len() < 2 {
+        return Ok(());
+    }
+    let message = format!(
+        "{} has {} frames, but each of several files is one frame",
+        file.display(),
+        frames.len()
+    );
+    let hint = "give all frames in one file, or one frame in each";
+    Err(Error::input(message, hint))
 }
 
 /// Adds the frames of one more file, which must be of the same kind.

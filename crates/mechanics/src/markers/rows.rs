@@ -10,6 +10,7 @@ use super::understood::Understood;
 use crate::document::TextEncoding;
 use crate::error::Diagnostic;
 use crate::mesh::Mesh;
+use crate::statistics::farthest;
 
 /// How files are to be understood.
 #[derive(Clone, Debug, Default)]
@@ -63,7 +64,9 @@ impl FileRows {
     /// position and displacement in the same frame are one measurement, and count once: a copy carries no information. Rows with other
     /// displacements at the same position are further measurements.
     pub fn gather(self, warnings: &mut Vec<Diagnostic>) -> MarkerSeries {
+        let coordinates = self.rows.iter().flat_map(|row| row.position);
         let mut gathering = Gathering {
+            rounding: ROUNDING * farthest(coordinates.filter(|x| x.is_finite())).abs(),
             named: self.rows.iter().all(|row| row.name.is_some()),
             mesh: self.mesh.is_some(),
             ..Gathering::default()
@@ -73,9 +76,15 @@ impl FileRows {
     }
 }
 
+/// Positions at rest that differ by less than this share of the largest coordinate are those of one marker: where the displacement was
+/// subtracted from the position in the frame, they are rounded differently in every frame.
+const ROUNDING: f64 = 1e-9;
+
 /// Frames as they fill with rows.
 #[derive(Default)]
 struct Gathering {
+    /// The distance in mm to multiples of which positions are rounded to find those of one marker.
+    rounding: f64,
     /// Whether the files number all points.
     named: bool,
     /// Whether the points are nodes of a mesh.
@@ -94,7 +103,9 @@ struct Gathering {
 
 impl Gathering {
     fn add(&mut self, row: Row) {
-        let key = row.position.map(|x| (x + 0.0).to_bits());
+        let key = row
+            .position
+            .map(|x| ((x / self.rounding).round() + 0.0).to_bits());
         let next = self.by_position.len();
         let number = match row.name {
             Some(name) if self.named => name as usize,

@@ -182,14 +182,10 @@ impl<'a> Reader<'a> {
             let known: Vec<&str> = names.filter(|name| !name.is_empty()).collect();
             columns::check_all(table, &used, &known, ignored)?;
         }
-        let columns = |pair: [Length; 2]| pair.map(|(column, _)| column);
-        columns::check_flat(
-            table,
-            columns(self.positions),
-            columns(self.displacements),
-            layout.out_of_plane,
-            ignored,
-        )?;
+        let vectors = [self.positions, self.displacements];
+        columns::check_flat(table, vectors, layout.out_of_plane, ignored, |row| {
+            !self.is_lost(row)
+        })?;
         Ok(self)
     }
 
@@ -202,6 +198,13 @@ impl<'a> Reader<'a> {
         lengths.chain(others.into_iter().flatten())
     }
 
+    /// Whether the point of a row was not found.
+    fn is_lost(&self, values: &[f64]) -> bool {
+        self.lost.is_some_and(|column| values[column] < 0.0)
+            || self.converged.is_some_and(|column| values[column] == 0.0)
+            || self.mismatch.is_some_and(|column| values[column] != 0.0)
+    }
+
     fn row(&self, row: usize) -> Result<Row, Error> {
         let (values, line) = &self.table.rows[row];
         let refuse = |message: &str, hint: &str| self.table.refuse(line.clone(), message, hint);
@@ -211,14 +214,13 @@ impl<'a> Reader<'a> {
         if self.deformed && displacement.iter().all(|u| u.is_finite()) {
             position = [position[0] - displacement[0], position[1] - displacement[1]];
         }
-        let lost = self.lost.is_some_and(|column| values[column] < 0.0);
+        let is_lost = self.is_lost(values);
         let deviation = self.deviation.map(|(column, unit)| values[column] * unit);
-        if deviation.is_some_and(|deviation| deviation < 0.0) && !lost {
+        if deviation.is_some_and(|deviation| deviation < 0.0) && !is_lost {
             let hint = "leave it empty where it is not known";
             return Err(refuse("a standard deviation is negative", hint));
         }
-        let unconverged = self.converged.is_some_and(|column| values[column] == 0.0);
-        if lost || unconverged || self.mismatch.is_some_and(|column| values[column] != 0.0) {
+        if is_lost {
             displacement = [f64::NAN; 2];
         }
         if position.iter().any(|x| !x.is_finite()) {

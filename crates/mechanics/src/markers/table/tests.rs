@@ -190,6 +190,46 @@ fn mudic_gives_positions_in_the_frame() {
 }
 
 #[test]
+fn positions_in_the_frame_are_those_of_the_same_markers_in_all_frames() {
+    let head = "x [mm],y [mm],ux [mm],uy [mm]\n";
+    let texts = ["0.3,1,0.1,0\n1.1,1,0.1,0\n", "0.4,1,0.2,0\n1.2,1,0.2,0\n"];
+    let [first, second] = texts.map(|rows| format!("{head}{rows}"));
+    let reading = ReadSettings {
+        deformed: Some(true),
+        ..ReadSettings::default()
+    };
+    let files = [("1.csv", &*first), ("2.csv", &*second)];
+    let measured = read_texts(&files, &reading).unwrap();
+    let numbers = measured.series.frames.iter().map(|frame| {
+        let markers = frame.markers.iter();
+        markers.map(|marker| marker.number).collect::<Vec<_>>()
+    });
+    assert_eq!(numbers.collect::<Vec<_>>(), [[0, 1], [0, 1]]);
+    assert_eq!(measured.series.positions().len(), 2);
+}
+
+#[test]
+fn a_plane_is_checked_in_one_unit_and_by_points_that_were_found() {
+    for text in [
+        "x [mm],y [mm],ux [mm],uy [mm],uz [um]\n1,2,3,4,10\n",
+        "X [mm],Y [mm],Z [mm],U [mm],V [mm],W [mm],sigma\n1,2,50,3,4,0,0.01\n0,0,0,0,0,0,-1\n",
+    ] {
+        let read = read_texts(&[("a.csv", text)], &ReadSettings::default());
+        assert_eq!(read.unwrap().series.frames[0].markers.len(), 1, "{text}");
+    }
+}
+
+#[test]
+fn a_file_of_several_frames_stands_alone() {
+    let text = "frame,x [mm],y [mm],ux [mm],uy [mm]\n1,0,0,1,0\n2,0,0,2,0\n";
+    let settings = ReadSettings::default();
+    let alone = read_texts(&[("a.csv", text)], &settings).unwrap();
+    assert_eq!(alone.series.frames.len(), 2);
+    let error = read_texts(&[("a.csv", text), ("b.csv", text)], &settings).unwrap_err();
+    assert!(error.to_string().contains("has 2 frames"), "{error}");
+}
+
+#[test]
 fn ncorr_keeps_matrices() {
     let (u, v) = ("0,1,2\n0,3,NaN\n", "0,-1,-2\n0,0,1\n");
     let reading = ReadSettings {
@@ -292,6 +332,10 @@ fn unusable_tables_are_refused_with_line_and_remedy() {
         ),
         (
             "x [mm],y [mm],ux [mm],uy [mm],uz [mm]\n1,2,3,4,1\n",
+            "the points do not stay in a plane: `uz` reaches 1.0000",
+        ),
+        (
+            "x [mm],y [mm],ux [mm],uy [mm],uz [m]\n1,2,3,4,0.001\n",
             "the points do not stay in a plane: `uz` reaches 1.0000",
         ),
         (

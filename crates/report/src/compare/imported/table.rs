@@ -91,13 +91,8 @@ pub fn read(table: &Table, settings: &ImportSettings) -> Result<Points, Error> {
     let flat = columns::out_of_plane(table, columns::OUT_OF_PLANE, ignored);
     let used = read.iter().copied().chain(flat).chain(plain(table, NAMES));
     columns::check_all(table, &used.collect::<Vec<_>>(), &KNOWN, ignored)?;
-    columns::check_flat(
-        table,
-        [read[0], read[1]],
-        [read[2], read[3]],
-        columns::OUT_OF_PLANE,
-        ignored,
-    )?;
+    let vectors = [[lengths[0], lengths[1]], [lengths[2], lengths[3]]];
+    columns::check_flat(table, vectors, columns::OUT_OF_PLANE, ignored, |_| true)?;
     let rows = chosen(table, &choices)?;
     let pair = |row: &&Vec<f64>, first: usize| {
         [0, 1].map(|axis| {
