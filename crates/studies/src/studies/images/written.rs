@@ -67,8 +67,9 @@ pub fn results(tracked: &TrackedImages, name: String, seconds: f64) -> Results {
     }
 }
 
-/// The markers of all frames.
+/// The markers of all frames, with seven decimals, or more where these would be coarser than a ten-thousandth of a pixel.
 fn table(tracked: &TrackedImages) -> String {
+    let decimals = (4.0 - tracked.pixel.log10().floor()).clamp(7.0, 20.0) as usize;
     let mut text = String::from("frame,id,x [mm],y [mm],ux [mm],uy [mm],standard_deviation [mm]\n");
     for frame in &tracked.series.frames {
         for Marker {
@@ -82,7 +83,7 @@ fn table(tracked: &TrackedImages) -> String {
                 .iter()
                 .chain(displacement)
                 .chain(standard_deviation)
-                .map(|value| format!("{value:.7}"))
+                .map(|value| format!("{value:.decimals$}"))
                 .collect();
             let _ = writeln!(text, "{},{number},{}", frame.number, lengths.join(","));
         }

@@ -152,7 +152,14 @@ pub(super) fn other_gap(study: &MarkerStudy, alternative: &Alternative) -> Optio
         return None;
     };
     let stated = study.conditions.edge_gap.or(study.unknown_gap.map(|_| 0.0));
-    stated.map(|gap| format!("{:.1}", (gap + outwards).max(0.0)))
+    let gap = (stated? + outwards).max(0.0);
+    // One decimal, or the first digit of a smaller gap.
+    let decimals = if gap > 1e-6 {
+        (-gap.log10().floor()).max(1.0) as usize
+    } else {
+        1
+    };
+    Some(format!("{gap:.decimals$}"))
 }
 
 const EXPLANATION: &str = "Explained: the residuals of the markers are white noise. Explained with correlated noise: they correlate \

@@ -170,7 +170,7 @@ fn corrected(field: &MarkerStudy, estimate: &FieldEstimate) -> Grid {
         [xx, xy, yx, yy, across]
     });
     let thickness = cells.map(|cell| cell.thickness_error);
-    let [of_displacement, of_stress, of_thickness] = if estimate.is_explained() {
+    let [of_displacement, of_stress, of_thickness] = if estimate.has_intervals() {
         [
             "displacement_standard_error_mm",
             "nominal_stress_standard_error_MPa",

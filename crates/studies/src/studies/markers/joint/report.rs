@@ -278,8 +278,8 @@ fn intervals(estimate: &JointEstimate, explained: bool) -> String {
 
 fn predictions(study: &JointStudy, joint: &JointResults) -> [Block; 3] {
     let difference = |force: &ForcePrediction| {
-        let predicted = force.predicted?;
-        Some(100.0 * (predicted / force.measured.force - 1.0))
+        let difference = 100.0 * (force.predicted? / force.measured.force - 1.0);
+        difference.is_finite().then_some(difference)
     };
     let rows = forces(study, &joint.estimate);
     let table = force_table(&rows)
