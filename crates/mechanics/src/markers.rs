@@ -3,7 +3,7 @@
 //! ```text
 //! .csv, .txt, .dat   ─table─┐
 //! Ncorr           ─matrices─┼─rows─▶ MarkerSeries { frames of markers } (and the mesh that they came on)
-//! .vtu .msh .frd … ─on_mesh─┘
+//! .vtu .msh .frd … ─────────┘
 //! ```
 //!
 //! All lengths are in mm. A marker that was not found in a frame is absent from it.
@@ -12,7 +12,6 @@ pub mod columns;
 mod frames;
 mod layouts;
 mod matrices;
-mod on_mesh;
 mod outside;
 mod plausible;
 mod positions;
@@ -25,7 +24,7 @@ mod understood;
 
 pub use frames::{Frame, Marker, MarkerSeries};
 pub use plausible::{MarkersOnMesh, check_thickness, place_on, unit_ratio};
-pub use read::{MarkerFiles, read};
+pub use read::{MarkerFiles, number_at_end, read};
 pub use role::{ChosenColumns, Role};
 pub use rows::ReadSettings;
 pub use subset::Subset;

@@ -1,5 +1,6 @@
 //! The pattern of a first image followed through later ones.
 
+use std::collections::BTreeSet;
 use std::sync::OnceLock;
 
 use rayon::prelude::*;
@@ -339,14 +340,8 @@ fn check_size(first: &GreyImage, other: &GreyImage) -> Result<(), Error> {
 
 /// Some of the points, from the middle of their list outwards.
 fn spread_out(points: &[usize]) -> Vec<usize> {
-    const MOST: usize = 9;
     let parts = [8, 4, 12, 6, 10, 2, 14, 7, 9].map(|sixteenth| points.len() * sixteenth / 16);
-    let mut chosen: Vec<usize> = parts
-        .into_iter()
-        .filter_map(|at| points.get(at).copied())
-        .collect();
-    let mut seen = std::collections::BTreeSet::new();
-    chosen.retain(|point| seen.insert(*point));
-    chosen.truncate(MOST);
-    chosen
+    let chosen = parts.into_iter().filter_map(|at| points.get(at).copied());
+    let mut seen = BTreeSet::new();
+    chosen.filter(|point| seen.insert(*point)).collect()
 }

@@ -46,6 +46,12 @@ impl Frame {
         markers.map(|[x, y]| x * x + y * y).sum()
     }
 
+    /// The length of its largest displacement in mm.
+    pub fn largest_displacement(&self) -> f64 {
+        let displacements = self.markers.iter().map(|marker| marker.displacement);
+        displacements.fold(0.0, |most: f64, [x, y]| most.max(x.hypot(y)))
+    }
+
     /// ∂u/∂X of the linear field that is nearest to the markers; `None` where they lie on a line.
     pub fn mean_gradient(&self) -> Option<Matrix2<f64>> {
         let pairs = || {

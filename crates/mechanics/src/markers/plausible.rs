@@ -36,19 +36,18 @@ pub fn check(series: &MarkerSeries, warnings: &mut Vec<Diagnostic>) -> Result<()
             "check the columns or the array that contain it",
         ));
     }
-    let markers = || series.frames.iter().flat_map(|frame| &frame.markers);
-    let extent = sides(markers().map(|marker| marker.position));
+    let markers = series.frames.iter().flat_map(|frame| &frame.markers);
+    let positions = markers.map(|marker| marker.position);
+    let extent = sides(positions.clone());
     let size = extent[0].max(extent[1]);
-    let largest = markers()
-        .map(|marker| marker.displacement[0].hypot(marker.displacement[1]))
-        .fold(0.0, f64::max);
+    let frames = series.frames.iter().map(Frame::largest_displacement);
+    let largest = frames.fold(0.0, f64::max);
     if largest == 0.0 {
         return Err(Error::input(
             "the displacement is zero everywhere",
             "give a field of a specimen that is deformed",
         ));
     }
-    let positions = markers().map(|marker| marker.position);
     if let Err(measures) = check_size(positions)
         && size > 0.0
     {

@@ -4,12 +4,12 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use super::frames::MarkerSeries;
-use super::rows::{FileRows, ReadSettings};
+use super::rows::{FileRows, ReadSettings, Row};
 use super::understood::Understood;
-use super::{matrices, on_mesh, plausible, positions, table};
+use super::{matrices, plausible, positions, table};
 use crate::document::is_table_path;
 use crate::error::{Diagnostic, Error};
-use crate::mesh::Mesh;
+use crate::mesh::{Mesh, import_series};
 
 /// What files hold.
 #[derive(Debug)]
@@ -38,7 +38,7 @@ pub fn read(files: &[PathBuf], settings: &ReadSettings) -> Result<MarkerFiles, E
             [frame] if settings.rest.is_some() => positions::read(frame, settings)?,
             [u, v] => matrices::read(u, v, settings)?,
             _ if is_table_path(group[0]) => table::read(group[0], settings)?,
-            _ => on_mesh::read(group[0], settings)?,
+            _ => on_mesh(group[0], settings)?,
         };
         if several {
             check_one_frame(&file_rows, group[0])?;
@@ -63,6 +63,36 @@ pub fn read(files: &[PathBuf], settings: &ReadSettings) -> Result<MarkerFiles, E
         mesh,
         understood,
         warnings,
+    })
+}
+
+/// Reads a field on a mesh: the nodes are the markers, and all its steps are frames.
+fn on_mesh(path: &Path, reading: &ReadSettings) -> Result<FileRows, Error> {
+    let unit = reading.unit.unwrap_or(1.0);
+    let series = import_series(path, unit, reading.array.as_deref()).map_err(|reason| {
+        let hint = "give a field as .csv (x, y, ux, uy), .vtu, .vtk (up to version 4), .pvd, Gmsh's .msh with \
+                    $NodeData, or CalculiX' .frd (ASCII)";
+        Error::input(format!("{} {reason}", path.display()), hint)
+    })?;
+    let several = series.steps.len() > 1;
+    let steps = series.steps.iter().zip(1..);
+    let rows = steps.flat_map(|(step, number)| {
+        let nodes = series.mesh.nodes.iter().zip(0..);
+        let pairs = nodes.zip(step.displacement.chunks_exact(2));
+        pairs.map(move |((position, node), u)| Row {
+            frame: several.then_some(number),
+            time: step.time,
+            name: Some(node),
+            position: *position,
+            displacement: [u[0], u[1]],
+            ..Row::default()
+        })
+    });
+    Ok(FileRows {
+        rows: rows.collect(),
+        mesh: Some(series.mesh),
+        understood: Understood::of("field on a mesh"),
+        ..FileRows::default()
     })
 }
 
@@ -97,6 +127,12 @@ fn append(combined: &mut FileRows, added: FileRows, file: &Path) -> Result<(), E
     Err(Error::input(format!("{} {fault}", file.display()), hint))
 }
 
+/// The number at the end of a name.
+pub fn number_at_end(name: &str) -> Option<usize> {
+    let before = name.trim_end_matches(|letter: char| letter.is_ascii_digit());
+    name[before.len()..].parse().ok()
+}
+
 /// The numbers at the ends of the files' names where all have different ones, otherwise 1, 2, 3 …
 fn frame_numbers(groups: &[Vec<&Path>]) -> Vec<usize> {
     let number = |group: &Vec<&Path>| {
@@ -105,8 +141,7 @@ fn frame_numbers(groups: &[Vec<&Path>]) -> Vec<usize> {
             2 => matrices::series(&stem)?.to_owned(),
             _ => stem,
         };
-        let digits = stem.trim_end_matches(|letter: char| letter.is_ascii_digit());
-        stem[digits.len()..].parse().ok()
+        number_at_end(&stem)
     };
     let numbers: Option<Vec<usize>> = groups.iter().map(number).collect();
     let different =

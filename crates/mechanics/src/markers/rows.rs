@@ -197,17 +197,14 @@ fn with_markers(
     let mut warn = |message: String, hint: &str| {
         warnings.push(Diagnostic::warning("", message).hint(hint));
     };
-    let largest = |frame: &Frame| {
-        let lengths = frame.markers.iter().map(|marker| marker.displacement);
-        lengths.fold(0.0, |most: f64, [x, y]| most.max(x.hypot(y)))
-    };
-    let most = frames.values().map(largest).fold(0.0, f64::max);
+    let largest = frames.values().map(Frame::largest_displacement);
+    let most = largest.fold(0.0, f64::max);
     let (mut kept, mut at_rest) = (Vec::new(), Vec::new());
     for (number, frame) in frames {
         if frame.markers.is_empty() {
             let message = format!("frame {number} has no displacement at all");
             warn(message, "it is left out");
-        } else if most > 0.0 && largest(&frame) <= AT_REST * most {
+        } else if most > 0.0 && frame.largest_displacement() <= AT_REST * most {
             let message = format!("no marker moves in frame {number}: it is the picture at rest");
             warn(message, "it is left out, with the forces in it");
             at_rest.push(number);

@@ -252,9 +252,7 @@ impl<'a> Reader<'a> {
 
     /// What was taken from which column, and how.
     fn understood(&self) -> Understood {
-        let [x, y, ux, uy] = [self.positions, self.displacements].concat()[..] else {
-            return Understood::of(self.layout);
-        };
+        let ([x, y], [ux, uy]) = (self.positions, self.displacements);
         let lengths = [("x", x), ("y", y), ("ux", ux), ("uy", uy)];
         let deviation = self.deviation.map(|length| ("standard deviation", length));
         let lengths = lengths.into_iter().chain(deviation);

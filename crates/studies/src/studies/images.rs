@@ -13,7 +13,9 @@ use crate::error::{Diagnostic, Error};
 use crate::images::{
     GreyImage, ImageFile, Region, Settings, Tracked, Tracker, is_image_path, list, series,
 };
-use crate::markers::{Frame, MarkerFiles, MarkerSeries, Subset, Understood, read_lines};
+use crate::markers::{
+    Frame, MarkerFiles, MarkerSeries, Subset, Understood, number_at_end, read_lines,
+};
 use crate::units::decimals;
 
 mod written;
@@ -270,10 +272,8 @@ fn left_out(fault: Diagnostic, number: usize) -> Diagnostic {
 
 /// The numbers at the ends of the files' names where all have one and they increase, else 1, 2, 3 …
 fn numbers(files: &[ImageFile]) -> Vec<usize> {
-    let number = |file: &ImageFile| {
-        let stem = file.path.file_stem()?.to_string_lossy().into_owned();
-        let digits = stem.trim_end_matches(|letter: char| letter.is_ascii_digit());
-        stem[digits.len()..].parse().ok()
+    let number = |file: &ImageFile| -> Option<usize> {
+        number_at_end(&file.path.file_stem()?.to_string_lossy())
     };
     let parsed: Option<Vec<usize>> = files.iter().map(number).collect();
     let grow = |numbers: &Vec<usize>| numbers.windows(2).all(|pair| pair[0] < pair[1]);

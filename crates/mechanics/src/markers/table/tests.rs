@@ -115,8 +115,8 @@ fn dice_is_read_in_pixels_and_its_y_axis_turned_up() {
 fn points_that_vic_and_dice_did_not_find_are_lost() {
     for (head, rows, layout) in [
         (
-            "X [mm],Y [mm],U [mm],V [mm],exx [1],sigma [pixel]",
-            "1,2,3,4,0,0.02\n2,2,0,0,0,-1\n",
+            "X [mm],Y [mm],Z [mm],U [mm],V [mm],W [mm],exx [1],sigma [pixel]",
+            "1,2,50,3,4,0,0,0.02\n2,2,0,0,0,0,0,-1\n",
             "VIC-3D",
         ),
         (
@@ -209,14 +209,10 @@ fn positions_in_the_frame_are_those_of_the_same_markers_in_all_frames() {
 }
 
 #[test]
-fn a_plane_is_checked_in_one_unit_and_by_points_that_were_found() {
-    for text in [
-        "x [mm],y [mm],ux [mm],uy [mm],uz [um]\n1,2,3,4,10\n",
-        "X [mm],Y [mm],Z [mm],U [mm],V [mm],W [mm],sigma\n1,2,50,3,4,0,0.01\n0,0,0,0,0,0,-1\n",
-    ] {
-        let read = read_texts(&[("a.csv", text)], &ReadSettings::default());
-        assert_eq!(read.unwrap().series.frames[0].markers.len(), 1, "{text}");
-    }
+fn motions_out_of_the_plane_have_their_own_unit() {
+    let text = "x [mm],y [mm],ux [mm],uy [mm],uz [um]\n1,2,3,4,10\n";
+    let measured = read_texts(&[("a.csv", text)], &ReadSettings::default()).unwrap();
+    first_frame_is(&measured, &[marker(0, [1.0, 2.0], [3.0, 4.0])]);
 }
 
 #[test]

@@ -101,11 +101,6 @@ fn deviation(tracked: &TrackedImages, frame: &Frame) -> f64 {
     (sum / frame.markers.len().max(1) as f64).sqrt() / tracked.pixel
 }
 
-fn largest(frame: &Frame) -> f64 {
-    let lengths = frame.markers.iter().map(|marker| marker.displacement);
-    lengths.fold(0.0, |most: f64, [x, y]| most.max(x.hypot(y)))
-}
-
 /// Mean stretches along x and y.
 fn stretches(frame: &Frame) -> [f64; 2] {
     frame.mean_gradient().map_or([f64::NAN; 2], |gradient| {
@@ -125,7 +120,9 @@ fn frames(tracked: &TrackedImages) -> Table<&Frame> {
             file.map_or_else(String::new, ImageFile::name)
         })
         .column("points", |frame| frame.markers.len().to_string())
-        .column("largest displacement [mm]", |frame| number(largest(frame)))
+        .column("largest displacement [mm]", |frame| {
+            number(frame.largest_displacement())
+        })
         .column("mean stretch along x", |frame| {
             format!("{:.4}", stretches(frame)[0])
         })
@@ -168,7 +165,7 @@ fn step(tracked: &TrackedImages, frame: &Frame) -> Step {
     let [x, y] = stretches(frame);
     let quantities = json!({
         "points": frame.markers.len(),
-        "largest_displacement_mm": largest(frame),
+        "largest_displacement_mm": frame.largest_displacement(),
         "mean_stretch_x": x,
         "mean_stretch_y": y,
         "standard_deviation_pixels": deviation(tracked, frame),
