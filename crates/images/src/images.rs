@@ -17,7 +17,6 @@
 //! Motion and Deformation Measurements*, Springer 2009; S. Baker, I. Matthews, Int. J. Comput. Vis. 56, 221 (2004); B. Pan, Appl. Opt. 48, 1535
 //! (2009) for the order in which points are followed.
 
-mod curvature;
 mod defects;
 mod edge;
 mod filter;

@@ -249,11 +249,9 @@ impl ImageFile {
         let refuse = |fault: String| refuse(&self.path, fault, KINDS);
         if is_tiff(&self.path) {
             let mut decoder = self.decoder()?;
-            for _ in 0..self.page {
-                decoder
-                    .next_image()
-                    .map_err(|fault| refuse(fault.to_string()))?;
-            }
+            decoder
+                .seek_to_image(self.page)
+                .map_err(|fault| refuse(fault.to_string()))?;
             return of_tiff(decoder).map_err(refuse);
         }
         drop(self.open()?);

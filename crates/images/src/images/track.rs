@@ -5,7 +5,6 @@ use std::sync::OnceLock;
 
 use rayon::prelude::*;
 
-use super::curvature::add_curvature;
 use super::defects::{dead, repaired, saturated, warnings};
 use super::gradient::Reference;
 use super::grey::GreyImage;
@@ -16,7 +15,7 @@ use super::seed::Pyramid;
 use super::speckle::{PatchLayout, half_width};
 use super::spline::Spline;
 use super::subset::{Match, Subset};
-use super::tracked::Tracked;
+use super::tracked::{Tracked, add_curvature};
 use super::warp::Order;
 use crate::error::{Diagnostic, Error};
 

@@ -39,7 +39,6 @@ mod machine;
 mod materials;
 mod mistakes;
 mod quantities;
-mod reading;
 mod refined;
 mod report;
 mod request;

@@ -26,12 +26,10 @@ type Rule = (
 const RULES: [Rule; 9] = [
     ("unknown-edge", unknown_edge),
     ("contradicted-edges", contradicted_edges),
-    ("contradicted-force", |_, estimate| {
-        contradicted_force(estimate)
-    }),
-    (NOT_EXPLAINED, |_, estimate| not_explained(estimate)),
+    ("contradicted-force", contradicted_force),
+    (NOT_EXPLAINED, not_explained),
     ("no-measurement", no_measurement),
-    ("many-outliers", |_, estimate| many_outliers(estimate)),
+    ("many-outliers", many_outliers),
     ("stated-noise", stated_noise),
     ("large-strains", large_strains),
     ("beyond-card", beyond_card),
@@ -141,7 +139,7 @@ fn contradicted_edges(study: &MarkerStudy, estimate: &FieldEstimate) -> Option<D
 }
 
 /// The measured force that is farthest from that of the field.
-fn contradicted_force(estimate: &FieldEstimate) -> Option<Doubt> {
+fn contradicted_force(_: &MarkerStudy, estimate: &FieldEstimate) -> Option<Doubt> {
     let size = |check: &&ForceCheck| check.standardised.abs();
     let checks = estimate.force_checks.iter();
     let wrong = checks.filter(|check| check.contradicts());
@@ -162,7 +160,7 @@ fn contradicted_force(estimate: &FieldEstimate) -> Option<Doubt> {
     ))
 }
 
-fn not_explained(estimate: &FieldEstimate) -> Option<Doubt> {
+fn not_explained(_: &MarkerStudy, estimate: &FieldEstimate) -> Option<Doubt> {
     let verdict = &estimate.verdict;
     (verdict.answer == Answer::NotExplained).then(|| {
         let message = format!("{}: {}", verdict.answer.words(), reasons(verdict).join("; "));
@@ -194,7 +192,7 @@ fn no_measurement(study: &MarkerStudy, estimate: &FieldEstimate) -> Option<Doubt
     })
 }
 
-fn many_outliers(estimate: &FieldEstimate) -> Option<Doubt> {
+fn many_outliers(_: &MarkerStudy, estimate: &FieldEstimate) -> Option<Doubt> {
     has_many(estimate).then(|| {
         let (count, all) = (outliers(estimate), used(estimate));
         let remedy = match estimate.robust {

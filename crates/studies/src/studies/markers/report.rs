@@ -3,8 +3,9 @@
 use super::findings::{MISTAKE, NOT_EXPLAINED, remarks};
 use super::forces::{scale_line, scale_paragraph};
 use super::quantities::{largest_correction, largest_error, outliers, residual_rms, used};
-use super::{MarkerStudy, reading, refined, verdict};
+use super::{MarkerStudy, refined, verdict};
 use crate::estimation::{EdgeCondition, FieldEstimate};
+use crate::markers::Understood;
 use crate::results::{Block, Finding, Table};
 use crate::statistics::Estimate;
 use crate::units::decimals;
@@ -16,7 +17,7 @@ const SHOWN: usize = 12;
 pub fn summary(study: &MarkerStudy, estimates: &[FieldEstimate], doubts: &[Finding]) -> String {
     let mut lines = vec![format!(
         "{}; {}; mesh {}: {}",
-        reading::short(&study.understood),
+        layout(&study.understood),
         study.cards().words(&study.mesh, |card| card.name.clone()),
         study.mesh_origin,
         study.mesh.describe()
@@ -115,7 +116,7 @@ pub fn blocks(study: &MarkerStudy, estimates: &[FieldEstimate]) -> Vec<Block> {
     let scale = last.and_then(|last| scale_paragraph(last, deviation));
     let words = scale.into_iter().chain(unknown_edge(study, estimates));
     blocks.extend(words.map(Block::paragraph));
-    blocks.extend(reading::blocks(&study.understood));
+    blocks.extend(reading_blocks(&study.understood));
     if let Some(last) = last {
         blocks.push(Block::heading("Edges of the last frame"));
         blocks.extend(edges(study, last));
@@ -265,4 +266,48 @@ fn edges(study: &MarkerStudy, last: &FieldEstimate) -> Vec<Block> {
         });
     blocks.extend((!smoothing.is_empty()).then(|| smoothing.block()));
     blocks
+}
+
+/// Columns, units, origin and axes of files, as far as there is something to say.
+fn reading_blocks(understood: &Understood) -> Vec<Block> {
+    if understood.columns.is_empty() && !understood.turned_up {
+        return Vec::new();
+    }
+    let encoding = understood.encoding.map(|name| format!("Text in {name}. "));
+    let table = understood.part.as_ref();
+    let part = table.map(|name| format!("The table `{name}` of the file. "));
+    let mut words = encoding.or(part).unwrap_or_default();
+    words += understood.axes();
+    if let Some(positions) = understood.positions() {
+        words += &format!(" {positions}");
+    }
+    let mut blocks = vec![
+        Block::heading("How the file was read"),
+        Block::paragraph(words),
+    ];
+    if !understood.columns.is_empty() {
+        let table = Table::of(&understood.columns)
+            .column("quantity", |taken| taken.holds.to_owned())
+            .column("column", |taken| taken.head.clone())
+            .column("unit [mm]", |taken| {
+                taken.unit.map_or(String::new(), |unit| unit.to_string())
+            })
+            .column("source of the unit", |taken| taken.unit_source.to_owned());
+        blocks.push(table.block());
+    }
+    let sketch = understood.sketch();
+    blocks.extend(sketch.map(|sketch| Block::Code("text", sketch.to_owned())));
+    blocks
+}
+
+/// The layout, for the terminal.
+fn layout(understood: &Understood) -> String {
+    let turned = if understood.turned_up {
+        ", y turned up"
+    } else {
+        ""
+    };
+    let table = understood.part.as_ref();
+    let part = table.map_or(String::new(), |name| format!(" of `{name}`"));
+    format!("{}{part}{turned}", understood.layout)
 }
