@@ -11,7 +11,7 @@ use crate::error::{Error, SolveFault};
 use crate::material::HyperelasticLaw;
 use crate::problem::sheet_energy::SheetEnergy;
 use crate::solve::vector::{add_scaled, largest};
-use crate::solve::{Assembly, Convergence, Inadmissible, Newton, NewtonSettings, Potential, Sum};
+use crate::solve::{Assembly, Inadmissible, Newton, NewtonSettings, Potential, Sum};
 
 mod approach;
 mod body_force;
@@ -47,16 +47,6 @@ pub struct Equations<'a> {
     pub body: Option<BodyForce>,
     pub forces: Vec<f64>,
 }
-
-/// [`Newton::solve`], or [`Newton::solve_near`].
-type NewtonMethod = fn(
-    &mut Newton,
-    &dyn Potential,
-    &mut [f64],
-    &mut [f64],
-    NewtonSettings,
-    &dyn Fn(usize) -> String,
-) -> Result<Convergence, SolveFault>;
 
 /// A state of the search.
 #[derive(Clone, Debug)]
@@ -199,15 +189,15 @@ impl<'a> Equations<'a> {
         state: &mut SearchState,
         settings: NewtonSettings,
     ) -> Result<Vec<f64>, Error> {
-        self.settle_by(Newton::solve, state, settings)
+        self.settle_from(state, settings, false)
     }
 
-    /// The same by one of Newton's methods.
-    fn settle_by(
+    /// The same; where the tangent is `near` that of the equilibrium it is kept.
+    fn settle_from(
         &mut self,
-        method: NewtonMethod,
         state: &mut SearchState,
         settings: NewtonSettings,
+        near: bool,
     ) -> Result<Vec<f64>, Error> {
         self.set_parameters(&state.parameters);
         let mut wanted = state.field.clone();
@@ -219,6 +209,11 @@ impl<'a> Equations<'a> {
         approach(newton, energy, &mut state.field, &wanted, &describe).map_err(solve)?;
         let field = &mut state.field;
         let solved = self.with_potential(|newton, potential| {
+            let method = if near {
+                Newton::solve_near
+            } else {
+                Newton::solve
+            };
             method(newton, potential, field, &mut residual, settings, &describe)
         });
         solved.map_err(solve)?;
@@ -326,7 +321,7 @@ impl<'a> Equations<'a> {
         let lost = free.fold(0.0, |most: f64, unknown| most.max(residual[*unknown].abs()));
         if lost > LOST * largest(&residual) {
             // The tangent of the linearisation before is near.
-            self.settle_by(Newton::solve_near, state, ON_THE_WAY)?;
+            self.settle_from(state, ON_THE_WAY, true)?;
         }
         Ok(())
     }

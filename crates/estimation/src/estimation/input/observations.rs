@@ -107,13 +107,10 @@ impl Observations {
             let fault = format!("marker {number} has the standard deviation {deviation} mm");
             return Err(Diagnostic::error("", fault).hint("give a positive one, or none"));
         }
-        let (cell, local) = mesh.locate(position);
-        let shape = mesh.shape(cell);
-        let size = if shape.is_triangle() { 1.0 } else { 2.0 };
-        if shape.outside(local) / size > OUTSIDE {
+        let Some((cell, local)) = mesh.locate_within(position, OUTSIDE) else {
             return Ok(());
-        }
-        let values = shape.values(local);
+        };
+        let values = mesh.shape(cell).values(local);
         for axis in [0, 1] {
             let nodes = mesh.cell(cell).iter().zip(&values);
             self.interpolation

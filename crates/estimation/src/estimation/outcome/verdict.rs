@@ -6,8 +6,8 @@ use crate::estimation::input::EdgeCondition;
 use crate::statistics::small_probability;
 use crate::units::decimals;
 
-/// The answer.
-#[derive(Clone, Copy, Debug, Default, Deserialize, Eq, PartialEq, Serialize)]
+/// The answer; a worse one is larger.
+#[derive(Clone, Copy, Debug, Default, Deserialize, Eq, Ord, PartialEq, PartialOrd, Serialize)]
 pub enum Answer {
     /// The residuals are white noise.
     #[default]

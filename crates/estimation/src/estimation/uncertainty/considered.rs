@@ -166,19 +166,16 @@ impl NearestField<'_> {
     /// Appends the considered parameters to those of the field.
     pub(in crate::estimation) fn consider(&mut self, considered: Considered) {
         let (responses, squares) = (&considered.responses, &considered.squares);
-        let (before, more) = (responses.nrows(), responses.ncols());
+        let before = responses.nrows();
         let across = responses * squares;
-        let mut joined = DMatrix::zeros(before + more, before + more);
         let of_field = &self.fit.covariance + &across * responses.transpose();
-        joined
-            .view_range_mut(..before, ..before)
-            .copy_from(&of_field);
-        joined.view_range_mut(..before, before..).copy_from(&across);
-        let transposed = across.transpose();
-        joined
-            .view_range_mut(before.., ..before)
-            .copy_from(&transposed);
-        joined.view_range_mut(before.., before..).copy_from(squares);
+        let all = before + responses.ncols();
+        let joined = DMatrix::from_fn(all, all, |i, j| match (i < before, j < before) {
+            (true, true) => of_field[(i, j)],
+            (true, false) => across[(i, j - before)],
+            (false, true) => across[(j, i - before)],
+            (false, false) => squares[(i - before, j - before)],
+        });
         self.fit.covariance = joined;
         self.linear.sensitivities.extend(considered.changes);
     }

@@ -25,11 +25,8 @@ const ANSWERS: [Answer; 4] = [
 
 /// The worst answer of all frames.
 pub fn worst(estimates: &[FieldEstimate]) -> Answer {
-    let is_given = |answer: &Answer| {
-        let mut answers = estimates.iter().map(|estimate| estimate.verdict.answer);
-        answers.any(|one| one == *answer)
-    };
-    ANSWERS.into_iter().find(is_given).unwrap_or_default()
+    let answers = estimates.iter().map(|estimate| estimate.verdict.answer);
+    answers.max().unwrap_or_default()
 }
 
 /// The last frame with an answer.
