@@ -225,13 +225,12 @@ fn with_markers(
 /// The numbers that are missing between the first and the last of some frames; `None` where the numbers are regular, such as every tenth of a
 /// camera.
 fn missing_frames(numbers: &[usize]) -> Option<String> {
-    let neighbours = numbers.windows(2).map(|pair| [pair[0], pair[1]]);
-    let pairs: Vec<[usize; 2]> = neighbours.collect();
-    let steps: Vec<usize> = pairs.iter().map(|[from, to]| to - from).collect();
-    if steps.len() > 1 && steps.iter().all(|step| *step == steps[0]) {
+    let is_regular = |three: &[usize]| three[1] - three[0] == three[2] - three[1];
+    if numbers.len() > 2 && numbers.windows(3).all(is_regular) {
         return None;
     }
-    let gaps = pairs.iter().filter(|[from, to]| *to > from + 1);
+    let pairs = numbers.windows(2).map(|pair| [pair[0], pair[1]]);
+    let gaps = pairs.filter(|[from, to]| *to > from + 1);
     let described = gaps.map(|[from, to]| match to - from {
         2 => (from + 1).to_string(),
         _ => format!("{} to {}", from + 1, to - 1),
