@@ -234,34 +234,55 @@ impl<'a> Descent<'a> {
         })
     }
 
-    /// The step to the least misfit of the linearised frames, over the combinations that they determine.
+    /// The step to the least misfit of the linearised frames, over the combinations that they determine. A parameter at the end of its bound
+    /// that would leave it is held.
     fn step(&self, course: &Course, held: Option<usize>) -> Step {
+        let mut held: Vec<usize> = held.into_iter().collect();
+        loop {
+            let mut step = self.step_without(course, &held);
+            let most = self.largest_changes(&course.values, &step);
+            let at_end = |index: &usize| step[*index] != 0.0 && most[*index] <= 0.0;
+            if let Some(index) = (0..most.len()).find(at_end) {
+                held.push(index);
+                continue;
+            }
+            let share = step.iter().zip(&most).map(|(step, most)| step.abs() / most);
+            step /= share.fold(1.0, f64::max);
+            return step;
+        }
+    }
+
+    /// The whole step, with some parameters held.
+    fn step_without(&self, course: &Course, held: &[usize]) -> Step {
         let mut information = course.information();
         let mut score = course.score();
-        if let Some(held) = held {
-            information.row_mut(held).fill(0.0);
-            information.column_mut(held).fill(0.0);
-            score[held] = 0.0;
+        for held in held {
+            information.row_mut(*held).fill(0.0);
+            information.column_mut(*held).fill(0.0);
+            score[*held] = 0.0;
         }
         let (scales, limit) = match &self.scales {
             None => (self.scales_at(&course.values), LOOSE),
             Some(scales) => (scales.clone(), VAGUE),
         };
         let mut step = inverse(&directions(&information, &scales), &scales, limit) * score;
-        let most = self.largest_changes(&course.values);
-        let share = step.iter().zip(&most).map(|(step, most)| step.abs() / most);
-        step /= share.fold(1.0, f64::max);
+        held.iter().for_each(|held| step[*held] = 0.0);
         step
     }
 
-    /// The largest change of each parameter in one step.
-    fn largest_changes(&self, values: &[f64]) -> Vec<f64> {
+    /// The largest change of each parameter in a step; from the end of its bound, of one that leads inside.
+    fn largest_changes(&self, values: &[f64], step: &Step) -> Vec<f64> {
         let scales = self.scales_at(values);
         let parameters = self.law.parameters().iter().zip(values).zip(scales);
-        let most = parameters.map(|((parameter, value), scale)| {
-            let [low, high] = parameter.bound.ends();
-            WITHIN * scale.min(value - low).min(high - value)
-        });
+        let most = parameters
+            .zip(step.iter())
+            .map(|(((parameter, value), scale), step)| {
+                let [low, high] = parameter.bound.ends();
+                let (below, above) = (value - low, high - value);
+                let nearest = below.min(above);
+                let ahead = if *step > 0.0 { above } else { below };
+                WITHIN * scale.min(if nearest > 0.0 { nearest } else { ahead })
+            });
         most.collect()
     }
 
