@@ -48,7 +48,6 @@ pub struct Equations<'a> {
     pub forces: Vec<f64>,
 }
 
-/// A state of the search.
 #[derive(Clone, Debug)]
 pub struct SearchState {
     pub parameters: Vec<f64>,
@@ -102,7 +101,6 @@ impl<'a> Equations<'a> {
         })
     }
 
-    /// The law of a cell.
     pub fn law(&self, cell: usize) -> &dyn HyperelasticLaw {
         self.energy.laws().of(cell)
     }

@@ -282,7 +282,6 @@ impl NearestField<'_> {
 }
 
 impl Edge {
-    /// Its condition.
     pub(super) fn outcome(&self) -> EdgeOutcome {
         EdgeOutcome {
             edge: self.segment.name.clone(),

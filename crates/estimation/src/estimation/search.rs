@@ -326,7 +326,6 @@ impl NearestField<'_> {
         }
     }
 
-    /// The markers.
     pub fn observations(&self) -> &Observations {
         self.equations.task.observations
     }

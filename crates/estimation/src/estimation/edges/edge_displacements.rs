@@ -19,7 +19,6 @@ impl Combination {
         sum
     }
 
-    /// One parameter.
     pub fn parameter(index: usize, values: &[f64]) -> Self {
         Self {
             value: values[index],

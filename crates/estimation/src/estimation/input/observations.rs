@@ -26,7 +26,6 @@ pub struct Observations {
     pub displacements: Vec<[f64; 2]>,
     /// The weights of their components, two numbers per marker: 1/variance in 1/mm² where the noise is known, otherwise 1.
     pub weights: Vec<f64>,
-    /// Whether the noise is known.
     pub known_noise: bool,
     /// The number of times that the weights were adapted to noise that varies over the sheet.
     pub reweighted: usize,
@@ -146,7 +145,6 @@ impl Observations {
             .clone()
     }
 
-    /// Positions and displacements.
     pub fn points(&self) -> Points<'_> {
         Points {
             positions: &self.positions,

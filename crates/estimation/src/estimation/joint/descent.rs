@@ -27,7 +27,6 @@ const WITHIN: f64 = 0.5;
 /// The shortest share of a step.
 const SHORTEST: f64 = 1.0 / 64.0;
 
-/// All frames and the law.
 pub struct Descent<'a> {
     pub frames: Vec<&'a Frame<'a>>,
     pub law: RegressedLaw,

@@ -117,7 +117,6 @@ impl<'a> Frame<'a> {
         })
     }
 
-    /// The measured forces.
     pub fn measured(&self) -> &[MeasuredForce] {
         &self.source.knowledge.forces
     }

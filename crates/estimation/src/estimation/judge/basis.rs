@@ -102,7 +102,6 @@ impl Basis<'_> {
         Model::of_score(self.rows, nearest_field, scored).granting(self.rows, self.granted)
     }
 
-    /// The trial of each column.
     pub fn try_columns(&self, nearest_field: &NearestField, columns: &[Column]) -> Vec<Trial> {
         let trials = columns.iter().map(|(alternative, design)| {
             let model = self.base.with(self.rows, [design]);

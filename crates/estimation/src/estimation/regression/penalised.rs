@@ -26,9 +26,7 @@ use crate::statistics::{CorrelatedNoise, Sites, Whitening, inverse, normal_equat
 /// The curvature of the displacement of one edge along one axis: Σ r² = ∫ (d²u/dt²)² dt with t = 0…1 along the edge.
 #[derive(Clone, Debug)]
 pub struct Roughness {
-    /// The edge.
     pub edge: String,
-    /// The axis.
     pub axis: usize,
     /// The values r in mm.
     pub values: Vec<f64>,
@@ -50,7 +48,6 @@ pub struct Regression<'a> {
     pub known_noise: bool,
     /// G and g.
     pub force_rows: (&'a DMatrix<f64>, &'a DVector<f64>),
-    /// The priors.
     pub priors: Vec<Roughness>,
     /// How markers with large residuals are weighted.
     pub robust: Robust,
@@ -78,7 +75,6 @@ impl VarianceComponents {
     }
 }
 
-/// A fit.
 pub struct Fit {
     /// δ.
     pub step: DVector<f64>,

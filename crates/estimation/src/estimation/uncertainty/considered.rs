@@ -181,7 +181,6 @@ impl NearestField<'_> {
     }
 }
 
-/// Subtracts from each value the mean of those of its edge.
 fn subtract_means(values: &mut [f64], edges: &[usize]) {
     let mut first = 0;
     for run in edges.chunk_by(|a, b| a == b) {

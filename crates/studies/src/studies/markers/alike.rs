@@ -100,7 +100,6 @@ fn correlation(before: (&Frame, &FieldEstimate), after: (&Frame, &FieldEstimate)
     }
 }
 
-/// The residuals of the sound markers by the numbers of these.
 fn residuals((frame, estimate): (&Frame, &FieldEstimate)) -> BTreeMap<usize, [f64; 2]> {
     let markers = sound(frame, estimate);
     markers

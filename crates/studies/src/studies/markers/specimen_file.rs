@@ -27,7 +27,6 @@ pub struct SpecimenFile {
 }
 
 impl SpecimenFile {
-    /// Reads the section.
     pub(super) fn read(section: &Section) -> Self {
         let path = |key| section.stated(key, Section::text).map(PathBuf::from);
         let length = |key| section.optional_quantity(key, Dimension::Length, Bound::Positive);

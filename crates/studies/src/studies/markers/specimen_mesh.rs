@@ -49,7 +49,6 @@ impl SpecimenMesh {
     }
 }
 
-/// The mesh of a request.
 pub(super) fn mesh(request: &Request, field: &MarkerFiles) -> Result<SpecimenMesh, Error> {
     if request.conditions.edge_gap.is_some()
         && (field.mesh.is_some() || !matches!(request.mesh, MeshSource::Data))

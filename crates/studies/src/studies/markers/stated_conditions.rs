@@ -108,7 +108,6 @@ fn read(root: &Section, folder: &Path) -> Conditions {
     conditions
 }
 
-/// A region, and its card.
 fn region(section: Section, folder: &Path) -> Option<(String, Card)> {
     let section = section.requiring(&["on", "card"]);
     let card = read_card(&section, folder);

@@ -36,7 +36,6 @@ fn error(estimate: &FieldEstimate) -> &'static str {
     }
 }
 
-/// The field at the nodes.
 pub fn nodes(field: &MarkerStudy, estimate: &FieldEstimate) -> String {
     let error = error(estimate);
     let mut text = format!(
@@ -87,7 +86,6 @@ pub fn cells(field: &MarkerStudy, estimate: &FieldEstimate) -> String {
     text
 }
 
-/// The markers of a frame.
 pub fn markers(frame: &Frame, estimate: &FieldEstimate) -> String {
     let mut text = String::from(
         "marker,X_mm,Y_mm,ux_mm,uy_mm,residual_x_mm,residual_y_mm,standardised_residual,trust,outlier\n",

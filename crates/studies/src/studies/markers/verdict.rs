@@ -29,7 +29,6 @@ pub fn worst(estimates: &[FieldEstimate]) -> Answer {
     answers.max().unwrap_or_default()
 }
 
-/// The last frame with an answer.
 fn last_with<'a>(
     study: &'a MarkerStudy,
     estimates: &'a [FieldEstimate],
@@ -120,7 +119,6 @@ fn run_words(run: &[(usize, &Verdict)], answer: Answer) -> String {
     }
 }
 
-/// The reasons of a verdict in words.
 pub(super) fn reasons(verdict: &Verdict) -> Vec<String> {
     verdict.reasons.iter().copied().map(Reason::words).collect()
 }

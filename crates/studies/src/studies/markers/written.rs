@@ -133,7 +133,6 @@ pub(super) fn title(field: &MarkerStudy) -> String {
     }
 }
 
-/// The corrected fields of the last frames.
 fn explored(field: &MarkerStudy, estimates: &[FieldEstimate]) -> GridSeries {
     const MOST: usize = 20;
     let frames = field.frames_with(estimates);

@@ -138,7 +138,6 @@ pub fn combination(estimate: &JointEstimate, direction: &Direction) -> String {
     parts.join(" ")
 }
 
-/// A law in the ranking.
 pub struct RankedLaw {
     /// The card.
     pub name: String,
