@@ -1,7 +1,8 @@
 //! Corners of a motion, as of a machine at constant rates, which one smooth spline cannot follow.
 //!
 //! The second difference over k instants, xᵢ₊ₖ − 2 xᵢ + xᵢ₋ₖ, is k times the change of the rate within k instants of
-//! a corner, and small elsewhere; for a smooth motion it is nowhere many times larger than in its surroundings.
+//! a corner, and small elsewhere; for a smooth motion it is nowhere many times larger than in its surroundings. Rounding of the
+//! recording alone makes it up to two steps of the last digit.
 
 use crate::statistics::median;
 
@@ -14,16 +15,24 @@ const SURROUNDINGS: usize = 6;
 /// How many times larger than the median of its surroundings a corner's difference is: noise alone reaches six.
 const SIGNIFICANT: f64 = 10.0;
 
+/// The steps of the last digit that a corner's difference exceeds: a slow motion rests on one digit for many instants, so that the
+/// median is zero.
+const STEPS_OF_LAST_DIGIT: f64 = 2.5;
+
 /// Fewest corners that count: a single one is a jerk, or chance.
 const FEWEST: usize = 4;
 
 /// The number of corners of a motion sampled at even times; `None` where there are too few to count.
 pub fn corners(motion: &[f64]) -> Option<usize> {
-    let counts = STRIDES.map(|stride| at_stride(motion, stride).len());
+    let changes = motion.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+    let last_digit = changes.filter(|change| *change > 0.0);
+    let least = STEPS_OF_LAST_DIGIT * last_digit.fold(f64::INFINITY, f64::min);
+    let counts = STRIDES.map(|stride| at_stride(motion, stride, least).len());
     counts.into_iter().max().filter(|count| *count >= FEWEST)
 }
 
-fn at_stride(motion: &[f64], stride: usize) -> Vec<usize> {
+/// Where differences of a stride are those of corners, and larger than `least`.
+fn at_stride(motion: &[f64], stride: usize, least: f64) -> Vec<usize> {
     let Some(count) = motion.len().checked_sub(2 * stride) else {
         return Vec::new();
     };
@@ -36,7 +45,8 @@ fn at_stride(motion: &[f64], stride: usize) -> Vec<usize> {
         let is_first = result
             .last()
             .is_none_or(|last| i + stride - last > 4 * stride);
-        if is_first && *size > SIGNIFICANT * median(sizes[around].iter().copied()) && *size > 0.0 {
+        let significant = SIGNIFICANT * median(sizes[around].iter().copied());
+        if is_first && *size > significant.max(least) {
             result.push(i + stride);
         }
     }
@@ -75,5 +85,18 @@ mod tests {
                 assert_eq!(corners(&sampled(smooth, noise)), None, "{noise}");
             }
         }
+    }
+
+    /// Slow motions and turning points rest on one digit for many instants.
+    #[test]
+    fn digits_of_a_recording_are_no_corners() {
+        let slow = |t: f64| 50.0 * (TAU * 0.05 * t).sin();
+        let returning = |t: f64| 50.0 * (TAU * 0.5 * t).sin();
+        for smooth in [&slow as &dyn Fn(f64) -> f64, &returning] {
+            let rounded = |t: f64| smooth(t).round() / 50.0;
+            assert_eq!(corners(&sampled(rounded, 0.0)), None);
+        }
+        let triangle = |t: f64| (1000.0 * (t - (t + 0.5).floor()).abs()).round() / 1000.0;
+        assert!(corners(&sampled(triangle, 0.0)) >= Some(15));
     }
 }
