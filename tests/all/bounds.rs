@@ -83,6 +83,17 @@ fn too_large_studies_are_refused_with_key_estimate_and_remedy() {
             ),
             ["time.step", "time steps"],
         ),
+        (
+            study(
+                "released_plate.toml",
+                &[
+                    ("duration", "\"1000 s\""),
+                    ("interval", "\"1 s\""),
+                    ("step", "\"1 s\""),
+                ],
+            ),
+            ["corrector.enabled", "bytes of memory"],
+        ),
     ];
     for (text, parts) in cases {
         let printed = output_text("s.toml", &text, &["check", "s.toml"], 2);

@@ -5,6 +5,7 @@ use web_time::Instant as Clock;
 use super::between::cubic;
 use super::problem::MovingSheet;
 use super::solution::{Correction, ModelMotion};
+use crate::budget::Need;
 use crate::corrector::motion::{EquationOfMotion, WindowSettings};
 use crate::dynamics::{EnergyBalance, History, Instant, Motion, SheetViscosity, Viscosity};
 use crate::error::{Error, SolveFault};
@@ -61,6 +62,26 @@ const STEPS: f64 = 200.0;
 const AVERAGE_ACCELERATION: f64 = 0.25;
 
 impl MovingSheet {
+    /// The steps of the correction and the memory of its fields: the springs' at all steps, on their mesh and on that of the corrected
+    /// motion, the corrected ones and the multipliers. Nothing where the motion is not corrected.
+    pub(super) fn need_of_correction(&self) -> Need {
+        const FIELDS: f64 = 4.0;
+        let is_late = self.drive.release.is_some_and(|time| time > 0.0);
+        if !self.is_corrected || is_late || !self.viscosity.relaxation.is_empty() {
+            return Need::default();
+        }
+        let nodes: f64 = match self.specimen.grids() {
+            Some(grids) => grids.cells.iter().map(|cells| (cells + 1) as f64).product(),
+            None => self.specimen.outline.lattice().nodes.len() as f64,
+        };
+        let steps = STEPS * self.time.duration * self.bar_frequency();
+        Need {
+            steps,
+            bytes: FIELDS * 8.0 * 2.0 * nodes * steps,
+            ..Need::default()
+        }
+    }
+
     /// Corrects the motion of the springs on the mesh of the corrected field; only a note where the equation of motion cannot be written for three
     /// consecutive instants.
     pub fn correct(&self, springs: &ModelMotion, progress: Progress) -> Result<Correction, Error> {

@@ -72,7 +72,9 @@ fn read_table(section: &Section, start: f64, along: Along) -> Option<Vec<[f64; 2
             ("factors", factors)
         }
     };
-    if factors.first().is_some_and(|first| *first != start) {
+    // "35 %" and 0.35 differ by rounding.
+    let begins_elsewhere = |first: &f64| (first - start).abs() > 1e-12 * start.abs();
+    if factors.first().is_some_and(begins_elsewhere) {
         let message = format!("must begin with the {} at the start", along.name());
         let hint = match along {
             Along::Stretch => "the grips have held the plate at `start.stretch` before time 0",

@@ -91,24 +91,28 @@ pub fn read(root: &Section, folder: &Path) -> Option<MovingSheet> {
     };
     warn_of_rest(root, start, &sheet);
     check_release(root, &sheet);
-    affords(&in_time, &sheet).then_some(sheet)
+    affords(&in_time, &corrector, &sheet).then_some(sheet)
 }
 
 /// Whether a motion is not too large; that it is, is recorded.
-fn affords(in_time: &Section, sheet: &MovingSheet) -> bool {
+fn affords(in_time: &Section, corrector: &Section, sheet: &MovingSheet) -> bool {
     let need = sheet.need();
     let of_steps = Need {
         steps: need.steps,
         ..Need::default()
     };
     let others = Need { steps: 0.0, ..need };
-    in_time.affords("step", of_steps, FEWER_STEPS) && in_time.affords("interval", others, SMALLER)
+    in_time.affords("step", of_steps, FEWER_STEPS)
+        && in_time.affords("interval", others, SMALLER)
+        && corrector.affords("enabled", sheet.need_of_correction(), UNCORRECTED)
 }
 
 /// Hints for motions that are too large.
 const FEWER_STEPS: &str = "take a shorter duration, longer steps, or generalised-α; a short automatic step comes from small \
                            cells, little density or a stiff material";
 const SMALLER: &str = "take a shorter duration, longer intervals or fewer cells";
+const UNCORRECTED: &str = "the correction takes 200 steps in a period of the first longitudinal vibration: take a shorter duration or fewer cells, or \
+                           enabled = false";
 
 /// Plausible densities of soft materials in t/mm³.
 const LIKELY_DENSITY: std::ops::RangeInclusive<f64> = 1e-10..=1e-8;
