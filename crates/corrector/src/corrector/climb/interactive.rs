@@ -2,7 +2,9 @@
 
 use std::fmt;
 
-use super::{Climb, ClimbSolution, CorrectionHistory, Ending, Field, Provenance, Start};
+use super::{
+    Climb, ClimbSolution, CorrectionHistory, Ending, Field, ONLY_GRID_TOLERANCE, Provenance, Start,
+};
 use crate::error::{Error, SolveFault};
 use crate::problem::{DeformedSheet, RigidMotion};
 
@@ -24,11 +26,16 @@ impl fmt::Display for Grips {
 }
 
 impl Climb<'_> {
-    /// Corrects a field that is near the result, with the operators assembled before, to a share of its discretisation error.
+    /// Corrects a field that is near the result, with the operators assembled before, to a share of its discretisation error; of the field
+    /// itself where this is not known.
     fn near(&mut self, field: &mut Field, error: f64) -> Result<CorrectionHistory, SolveFault> {
         self.check_operators()?;
         let finest = self.levels.len() - 1;
-        let limit = self.settings.tolerance * error;
+        let limit = if error.is_nan() {
+            ONLY_GRID_TOLERANCE * field.size()
+        } else {
+            self.settings.tolerance * error
+        };
         let (sheet, most) = (self.sheet(), self.settings.max_iterations);
         let level = &mut self.levels[finest];
         let ending = Ending {
@@ -73,7 +80,7 @@ pub struct Interactive<'a> {
     climb: Climb<'a>,
     grips: Grips,
     climbed: ClimbSolution,
-    /// The discretisation error relative to the size of the field.
+    /// The discretisation error relative to the size of the field; NaN on a single grid, or where it begins at rest.
     relative_error: f64,
 }
 

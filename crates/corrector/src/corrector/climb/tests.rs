@@ -290,6 +290,17 @@ fn grips_in_the_hand_turn_the_plate_and_bring_it_back() {
 }
 
 #[test]
+fn grips_on_a_single_grid_move_although_its_error_is_not_known() {
+    let problem = problem("pva-10", [150.0, 50.0], 0.3);
+    let climb = Climb::even(&problem, [8, 4], DifferenceScheme::Gauss, TIGHT);
+    let mut hand = Interactive::new(climb, 0.3).unwrap();
+    let mut grips = hand.grips();
+    grips.right.displacement[1] += 0.5;
+    let error = hand.move_grips(grips).unwrap().discretisation_error;
+    assert!(error.is_nan(), "{error}");
+}
+
+#[test]
 fn finite_elements_of_nine_nodes_have_the_biquadratic_equations() {
     let problem = problem("pva-10", [150.0, 50.0], 0.5);
     let model = FiniteElements::new(&problem, [15, 5], Element::Q2);
