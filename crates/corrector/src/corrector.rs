@@ -26,7 +26,6 @@ mod dependence;
 mod difference_scheme;
 pub mod estimate;
 pub mod factor;
-mod iteration;
 pub mod matrix;
 pub mod motion;
 pub mod nested;

@@ -19,7 +19,6 @@ mod sheet;
 pub mod spring;
 mod state;
 mod step_forces;
-mod stepper;
 mod time_function;
 pub mod viscosity;
 

@@ -3,6 +3,7 @@
 //! Rows depend on each other when a combination yᵀ B of them vanishes. With rows of unit length the
 //! combinations y are found by inverse iteration on B Bᵀ + ε I; the rows with large entries take part.
 
+use super::factor::row_scales;
 use crate::solve::vector::{largest, norm};
 use crate::solve::{Cholesky, FactorFault, SparseRows};
 
@@ -24,22 +25,14 @@ const SMALLEST_ENTRY: f64 = 0.05;
 /// Looks for dependent rows of `jacobian` with the values c = `values` at a field whose entries are of the
 /// size `field_size`.
 pub fn find(jacobian: &SparseRows, values: &[f64], field_size: f64) -> Option<Dependence> {
-    let lengths = |row: usize| {
-        norm(
-            &jacobian
-                .row(row)
-                .iter()
-                .map(|entry| entry.1)
-                .collect::<Vec<_>>(),
-        )
-    };
-    if let Some(empty) = (0..jacobian.len()).find(|row| lengths(*row) == 0.0) {
+    let is_empty = |row: &usize| jacobian.row(*row).iter().all(|(_, value)| *value == 0.0);
+    if let Some(empty) = (0..jacobian.len()).find(is_empty) {
         return Some(Dependence {
             rows: vec![empty],
             contradictory: values[empty] != 0.0,
         });
     }
-    let scales: Vec<f64> = (0..jacobian.len()).map(|row| 1.0 / lengths(row)).collect();
+    let scales = row_scales(jacobian, &vec![1.0; jacobian.columns()]);
     let scaled = jacobian.scaled(&scales);
     let combination = vanishing_combination(&scaled).ok()?;
     if norm(&scaled.multiply_transposed(&combination)) > VANISHING * norm(&combination) {

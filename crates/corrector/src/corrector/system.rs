@@ -137,20 +137,11 @@ impl<'a> Corrector<'a> {
         };
         let mut names = Vec::new();
         for condition in &self.conditions {
-            let rows = match condition.unknowns() {
-                Some(unknowns) => unknowns.iter().map(|i| Some(*i)).collect(),
-                None => vec![None; condition.rows()],
-            };
-            names.extend(
-                rows.into_iter()
-                    .enumerate()
-                    .map(|(row, unknown)| match unknown {
-                        Some(unknown) => {
-                            format!("{} at {}", condition.name(), self.names.unknown(unknown))
-                        }
-                        None => format!("{}, row {row}", condition.name()),
-                    }),
-            );
+            let name = condition.name();
+            names.extend((0..condition.rows()).map(|row| match condition.unknowns() {
+                Some(unknowns) => format!("{name} at {}", self.names.unknown(unknowns[row])),
+                None => format!("{name}, row {row}"),
+            }));
         }
         let rows = dependent.rows.iter().take(MOST_NAMES);
         SolveFault::Dependent {

@@ -12,8 +12,7 @@
 
 use super::frequency;
 use super::motion::Motion;
-use super::state::BodyState;
-use super::stepper::Stepper;
+use super::state::{BodyState, Stepper};
 use super::viscosity::Viscosity;
 use crate::error::SolveFault;
 use crate::solve::Assembly;

@@ -14,9 +14,9 @@
 
 use super::frequency;
 use super::motion::Motion;
-use super::state::BodyState;
-use super::stepper::Stepper;
+use super::state::{BodyState, Stepper};
 use crate::error::SolveFault;
+use crate::solve::vector::largest;
 use crate::solve::{Assembly, Cholesky};
 
 /// The constants of generalised-α.
@@ -137,13 +137,7 @@ impl Implicit {
         let scale = after
             .largest_force(motion)
             .max(before.largest_force(motion));
-        let most = defect.iter().fold(0.0_f64, |most, r| {
-            if r.is_finite() {
-                most.max(r.abs())
-            } else {
-                f64::NAN
-            }
-        });
+        let most = largest(&defect);
         let relative = if most == 0.0 { 0.0 } else { most / scale };
         (defect, relative)
     }
@@ -206,7 +200,7 @@ impl Implicit {
             if relative <= self.tolerance || (stagnant && relative < ROUNDING_FLOOR) {
                 return Ok(after);
             }
-            if relative.is_nan() || (stagnant && relative > 2.0 * last && iteration > 2) {
+            if !relative.is_finite() || (stagnant && relative > 2.0 * last && iteration > 2) {
                 break;
             }
             fresh = !self.has_factor(step) || relative > SLOW_CONVERGENCE * last;
@@ -230,15 +224,13 @@ impl Implicit {
 impl BodyState {
     /// The largest force on an unknown in N, including reactions and inertia.
     fn largest_force(&self, motion: &Motion) -> f64 {
+        let inertia = motion.mass.iter().zip(&self.acceleration);
+        let inertia: Vec<f64> = inertia.map(|(m, a)| m * a).collect();
         let forces = &self.forces;
-        let size = |i: usize| {
-            let inertia = (motion.mass[i] * self.acceleration[i]).abs();
-            let others = [forces.elastic[i], forces.viscous[i], forces.external[i]];
-            others
-                .into_iter()
-                .fold(inertia, |most, force| most.max(force.abs()))
-        };
-        (0..motion.mass.len()).map(size).fold(0.0, f64::max)
+        let all = [&inertia, &forces.elastic, &forces.viscous, &forces.external];
+        all.map(|forces| largest(forces))
+            .into_iter()
+            .fold(0.0, f64::max)
     }
 }
 

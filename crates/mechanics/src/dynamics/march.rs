@@ -4,8 +4,7 @@ use super::central::Central;
 use super::history::{EnergyBalance, History};
 use super::implicit::Implicit;
 use super::motion::Motion;
-use super::state::BodyState;
-use super::stepper::Stepper;
+use super::state::{BodyState, Stepper};
 use crate::error::SolveFault;
 
 /// The integrator of a motion.

@@ -1,4 +1,4 @@
-//! A moving body at one time: its forces, its energies, and the data for its next step.
+//! A moving body at one time: its forces, its energies, the data for its next step, and the methods to take it.
 
 use super::history::{EnergyBalance, Instant};
 use super::motion::{Motion, MovingSupport};
@@ -313,4 +313,28 @@ impl BodyState {
         next.impose(motion, next.time, self.time);
         next
     }
+}
+
+/// A method to take a step.
+pub(super) trait Stepper {
+    /// Prepares for the supports that hold after a time.
+    fn prepare(&mut self, motion: &Motion, held: &[bool]) -> Result<(), SolveFault>;
+
+    /// The longest step in s that is safe at a state; `None` where any is.
+    fn longest(&mut self, motion: &Motion, at: &BodyState) -> Result<Option<f64>, SolveFault>;
+
+    /// The state a step later. `held` are the unknowns that supports hold in the step.
+    fn step(
+        &mut self,
+        motion: &Motion,
+        before: &BodyState,
+        step: f64,
+        held: &[bool],
+    ) -> Result<BodyState, SolveFault>;
+
+    /// Whether an exact step would conserve the sum of the energies; otherwise it may lose some.
+    fn conserves(&self) -> bool;
+
+    /// Factorisations so far.
+    fn factorisations(&self) -> usize;
 }
