@@ -31,7 +31,6 @@ mod ratios;
 mod sheet;
 mod start;
 mod sweep;
-mod tangents;
 #[cfg(test)]
 mod tests;
 

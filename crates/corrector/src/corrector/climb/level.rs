@@ -4,7 +4,6 @@ use super::correction_history::CorrectionHistory;
 use super::grid::{Field, Grid};
 use super::sheet::{Inverted, Sheet};
 use super::sweep::{Part, sum};
-use super::tangents::linearise;
 use crate::multigrid::{Multigrid, Vector};
 
 /// Most iterations of a linear system.
@@ -78,9 +77,7 @@ impl Level {
         u: &Field,
         multigrid: &mut Multigrid,
     ) -> Result<(), Inverted> {
-        let stencil = multigrid.stencil(self.index);
-        let admissible = linearise(sheet.law, sheet.thickness, &self.grid, u, stencil);
-        admissible.then_some(()).ok_or(Inverted)
+        sheet.linearise(&self.grid, u, multigrid.stencil(self.index))
     }
 
     /// Moves the free nodes of `u` towards F(u) = 0 by conjugate gradients, whose products with the Jacobian are
