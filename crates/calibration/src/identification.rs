@@ -20,6 +20,7 @@
 //! P. Craven, G. Wahba, Numer. Math. 31, 377 (1979), doi:10.1007/BF01404567
 
 use crate::error::Error;
+use crate::solve::vector::largest;
 use crate::statistics::{BSpline, Ends, extremes};
 use band::reach;
 use joint::{Joint, JointEquations, State};
@@ -33,7 +34,6 @@ mod joint;
 mod law_text;
 mod penalty;
 mod recording;
-mod resolution;
 mod sample;
 mod smoothing;
 mod suspects;
@@ -46,7 +46,6 @@ use corners::corners;
 pub use joint::Argument;
 pub use law_text::law_text;
 pub use recording::Recording;
-use resolution::largest;
 pub use sample::Sample;
 use suspects::examine;
 pub use types::{FittedMotion, Identification, IdentificationSettings, RecordingVerdict};

@@ -1,6 +1,6 @@
 //! Least-squares splines of a signal over time, with as many parts as its noise allows.
 
-use super::resolution::{RESOLUTION, largest};
+use crate::solve::vector::{difference, largest, norm};
 use crate::solve::{Cholesky, FactorFault, SymmetricPattern};
 use crate::statistics::{BSpline, Ends, LocalValues, MOST_FUNCTIONS};
 
@@ -15,6 +15,10 @@ const FINER: usize = 4;
 /// Parts of the motion that the longest interval between two instants may span: with more empty parts a spline is hardly determined, and oscillates
 /// there.
 const BRIDGED: f64 = 1.5;
+
+/// The share of a signal's largest value below which a deviation is no evidence against a body: sensors are not more linear, and splines of
+/// a motion without noise not more exact.
+pub const RESOLUTION: f64 = 1e-3;
 
 /// A spline fitted to one signal alone.
 #[derive(Clone, Debug)]
@@ -165,6 +169,12 @@ pub fn bridged_parts(times: &[f64]) -> usize {
     let intervals = times.windows(2).map(|pair| pair[1] - pair[0]);
     let longest = intervals.fold(f64::MIN_POSITIVE, f64::max);
     ((BRIDGED * (times[times.len() - 1] - times[0]) / longest) as usize).max(1)
+}
+
+/// Whether the residuals of a signal are larger than sensors are linear and splines exact.
+pub fn exceeds_resolution(measured: &[f64], fitted: &[f64]) -> bool {
+    let size = norm(&difference(measured, fitted)) / (measured.len() as f64).sqrt();
+    size > RESOLUTION * largest(measured)
 }
 
 #[cfg(test)]

@@ -13,8 +13,9 @@ use nalgebra::DVector;
 use super::basis::{Basis, Form};
 use super::joint::{Column, Joint, State};
 use super::penalty::PenalisedFit;
-use super::resolution::{RESOLUTION, largest};
+use super::smoothing::RESOLUTION;
 use super::types::{FittedMotion, Identification};
+use crate::solve::vector::largest;
 
 /// t above which a suspect is reported: by chance in less than one recording of a thousand, with eight tried.
 const LIMIT: f64 = 4.0;

@@ -3,8 +3,7 @@
 use super::band::Function;
 use super::basis::Form;
 use super::recording::Recording;
-use super::resolution::exceeds_resolution;
-use super::smoothing::SignalSpline;
+use super::smoothing::{SignalSpline, exceeds_resolution};
 use super::suspects::{Suspected, description};
 use super::types::{FittedMotion, Identification, RecordingVerdict};
 use crate::estimation::Answer;
