@@ -30,6 +30,7 @@ mod vector;
 pub use assembled_line::CellStiffness;
 pub use cycle::Multigrid;
 pub use stencil::Stencil;
+pub use strip::is_even;
 pub use transfer::Interpolation;
 pub use vector::{Lines, Vector};
 

@@ -20,7 +20,6 @@
 use std::ops::Range;
 
 use pulp::{Arch, Simd, WithSimd};
-use rayon::prelude::*;
 
 use super::line::{COLOURS, LineStencil, residual, store};
 use super::stencil::Stencil;
@@ -64,22 +63,19 @@ impl LineSmoother {
             count: grid[0].len(),
             nodes: grid[1].len(),
         };
-        let [x, y] = grid.each_ref().map(|positions| spacings(positions));
-        if [&x, &y].into_iter().all(|spacings| is_even(spacings)) {
-            return Self::of(Vec::new());
+        let mut strips = Vec::new();
+        if !grid.iter().all(|positions| is_even(positions)) {
+            let [x, y] = grid.each_ref().map(|positions| spacings(positions));
+            let along_x = close(&x, longest(&y), 1..lines.count - 1);
+            let along_y = close(&y, longest(&x), 0..lines.nodes);
+            for (axis, ranges) in [(Axis::X, along_x), (Axis::Y, along_y)] {
+                strips.extend(
+                    ranges
+                        .into_iter()
+                        .map(|range| Strip::new(axis, range, lines)),
+                );
+            }
         }
-        let along_x = close(&x, longest(&y), 1..lines.count - 1);
-        let along_y = close(&y, longest(&x), 0..lines.nodes);
-        let along_x = along_x
-            .into_iter()
-            .map(|range| Strip::new(Axis::X, range, lines));
-        let along_y = along_y
-            .into_iter()
-            .map(|range| Strip::new(Axis::Y, range, lines));
-        Self::of(along_x.chain(along_y).collect())
-    }
-
-    fn of(strips: Vec<Strip>) -> Self {
         Self {
             strips,
             factorised: false,
@@ -140,9 +136,11 @@ fn longest(spacings: &[f64]) -> f64 {
     spacings.iter().copied().fold(0.0, f64::max)
 }
 
-fn is_even(spacings: &[f64]) -> bool {
+/// Whether positions have equal distances.
+pub fn is_even(positions: &[f64]) -> bool {
+    let spacings = spacings(positions);
     let shortest = spacings.iter().copied().fold(f64::INFINITY, f64::min);
-    longest(spacings) <= (1.0 + EQUAL) * shortest
+    longest(&spacings) <= (1.0 + EQUAL) * shortest
 }
 
 /// Runs of positions among some whose neighbours are close, as compared with the longest spacing along the other axis.
@@ -197,11 +195,7 @@ impl Strip {
                 .for_each(|(position, numbers)| self.gather(stencil, batch, position, numbers));
             Arch::new().dispatch(Factorise { factors });
         };
-        if self.lines.threaded() {
-            factors.par_chunks_mut(size).enumerate().for_each(factorise)
-        } else {
-            factors.chunks_mut(size).enumerate().for_each(factorise)
-        }
+        self.lines.for_each_piece(&mut factors, size, factorise);
         self.factors = factors;
     }
 
@@ -250,11 +244,7 @@ impl Strip {
             });
         };
         let size = positions * PAIR;
-        if self.lines.threaded() {
-            corrections.par_chunks_mut(size).enumerate().for_each(solve)
-        } else {
-            corrections.chunks_mut(size).enumerate().for_each(solve)
-        }
+        self.lines.for_each_piece(&mut corrections, size, solve);
         self.add(&corrections, x, colour);
         self.corrections = corrections;
     }

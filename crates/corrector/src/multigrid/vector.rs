@@ -36,6 +36,20 @@ impl Lines {
     pub fn threaded(self) -> bool {
         self.count * self.nodes >= NODES_WORTH_A_THREAD && rayon::current_num_threads() > 1
     }
+
+    /// Calls `work` with the number of each piece of some numbers and the piece, by several threads where they pay.
+    pub fn for_each_piece(
+        self,
+        numbers: &mut [f32],
+        size: usize,
+        work: impl Fn((usize, &mut [f32])) + Sync + Send,
+    ) {
+        if self.threaded() {
+            numbers.par_chunks_mut(size).enumerate().for_each(work);
+        } else {
+            numbers.chunks_mut(size).enumerate().for_each(work);
+        }
+    }
 }
 
 /// A vector on a grid: ux and uy, or forces along both axes.

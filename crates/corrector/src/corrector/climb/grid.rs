@@ -2,9 +2,9 @@
 
 use super::sweep::{Part, sum};
 use crate::mesh::{self, lobatto};
-use crate::multigrid::{Interpolation, Lines};
+use crate::multigrid::{Interpolation, Lines, is_even};
 
-/// Positions and lengths that differ by less are equal.
+/// Positions that differ by less, as a share of a side, are equal.
 const POSITION_TOLERANCE: f64 = 1e-9;
 
 /// The degree from which on elements' own polynomials interpolate as well as cubics.
@@ -75,14 +75,7 @@ impl Grid {
 
     /// Whether the cells are equal along both axes.
     pub fn is_even(&self) -> bool {
-        self.coordinates.iter().all(|positions| {
-            let last = positions.len() - 1;
-            let step = (positions[last] - positions[0]) / last as f64;
-            let off = |pair: &[f64]| (pair[1] - pair[0] - step).abs();
-            positions
-                .windows(2)
-                .all(|pair| off(pair) <= POSITION_TOLERANCE * step)
-        })
+        self.coordinates.iter().all(|positions| is_even(positions))
     }
 
     /// The nodes along both axes that a coarser grid has too, if they are at least a third of the coarser grid's nodes and
