@@ -220,7 +220,7 @@ impl<'a> Fit<'a> {
                 .linearise(&self.state, &[])
                 .map_err(|_| unknown())?;
             if step < CHOICES {
-                let counts = [self.observations(), linearised.motion_count() as f64];
+                let counts = [self.observations(), self.state.motion.len() as f64];
                 let from = &self.state.functions;
                 exponents = linearised.reduced.choose(from, functions, counts);
             }

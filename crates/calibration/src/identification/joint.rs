@@ -6,7 +6,7 @@ use super::basis::{Basis, Form, Shape};
 use super::penalty::NormalEquations;
 use super::recording::Recording;
 use super::smoothing::{BandMatrix, SplineValues};
-use crate::solve::{Cholesky, FactorFault};
+use crate::solve::FactorFault;
 use crate::statistics::LocalValues;
 
 /// The argument of D(·).
@@ -64,7 +64,6 @@ pub type Column = Vec<[f64; 2]>;
 pub struct JointEquations {
     /// The equations after elimination of the motion.
     pub reduced: NormalEquations,
-    elimination: Cholesky,
     /// H⁻¹ G and H⁻¹ g of the motion.
     by_functions: DMatrix<f64>,
     by_data: DVector<f64>,
@@ -74,11 +73,6 @@ impl JointEquations {
     /// The step of the motion that belongs to a step of the functions.
     pub fn motion_step(&self, functions: &DVector<f64>) -> DVector<f64> {
         &self.by_data - &self.by_functions * functions
-    }
-
-    /// Number of the motion's coefficients.
-    pub fn motion_count(&self) -> usize {
-        self.elimination.pattern().size()
     }
 }
 
@@ -222,7 +216,6 @@ impl Joint<'_> {
         reduced.sum -= DVector::from_vec(pull).dot(&by_data);
         Ok(JointEquations {
             reduced,
-            elimination,
             by_functions,
             by_data,
         })

@@ -127,7 +127,7 @@ pub fn nearest(spline: &BSpline, times: &[f64], signal: &[f64]) -> Result<Vec<f6
 pub fn smooth(times: &[f64], signal: &[f64], degree: usize) -> Option<SignalSpline> {
     let n = times.len() as f64;
     let range = [times[0], times[times.len() - 1]];
-    let mut best: Option<(f64, SignalSpline)> = None;
+    let mut best: Option<(f64, usize, f64)> = None;
     let (mut intervals, most) = (2, times.len() / FEWEST);
     while intervals <= most {
         let spline = BSpline::new(range, intervals, degree, Ends::Uniform);
@@ -138,25 +138,20 @@ pub fn smooth(times: &[f64], signal: &[f64], degree: usize) -> Option<SignalSpli
             let free = n - spline.count() as f64;
             let variance = squares.sum::<f64>() / free;
             let score = variance * n / free;
-            if best.as_ref().is_none_or(|(least, _)| score < *least) {
-                let noise = variance.sqrt();
-                best = Some((
-                    score,
-                    SignalSpline {
-                        intervals,
-                        noise,
-                        coarse: false,
-                    },
-                ));
+            if best.is_none_or(|(least, ..)| score < least) {
+                best = Some((score, intervals, variance.sqrt()));
             }
         }
         intervals += 1 + intervals / 8;
     }
-    let (_, mut actual) = best?;
+    let (_, intervals, noise) = best?;
     // Without noise any number of parts would do better with more.
-    actual.coarse = actual.intervals + actual.intervals / 8 + 1 > most
-        && actual.noise > RESOLUTION * largest(signal);
-    Some(actual)
+    let coarse = intervals + intervals / 8 + 1 > most && noise > RESOLUTION * largest(signal);
+    Some(SignalSpline {
+        intervals,
+        noise,
+        coarse,
+    })
 }
 
 /// The parts of the motion that both signals ask for.
