@@ -101,6 +101,8 @@ pub struct Climb<'a> {
     weakest: f64,
 }
 
+/// The name of the climb in messages.
+const NAME: &str = "corrector (climb)";
 /// Most unknowns of the coarsest grid: a factorisation solves those of 12 × 4 cells faster than coarser grids would.
 const COARSEST: usize = 120;
 /// Least number of nodes of the first grid, on which the springs are corrected, if the finest grid has as many.
@@ -288,10 +290,10 @@ impl<'a> Climb<'a> {
     }
 }
 
-/// A fault of the climb at one stretch.
-fn at_stretch(stretch: f64) -> impl Fn(SolveFault) -> Error + Copy {
+/// A fault of a model at one stretch.
+pub(super) fn at_stretch(model: &'static str, stretch: f64) -> impl Fn(SolveFault) -> Error {
     move |fault| Error::Solve {
-        model: "corrector (climb)".into(),
+        model: model.into(),
         step: ClampedPlate::describe_step(stretch),
         fault,
     }

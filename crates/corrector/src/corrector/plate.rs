@@ -8,12 +8,12 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::climb::{Climb, Provenance};
+use super::climb::{Climb, Provenance, at_stretch};
 use super::condition::{Condition, Equilibrium, Linear};
 pub use super::specimen::EQUILIBRIUM;
 use super::specimen::{CorrectedField, correct_by, state_at};
 use super::{Corrector, CorrectorSettings, Describe, DifferenceScheme, Multipliers, Step};
-use crate::error::{Error, SolveFault};
+use crate::error::Error;
 use crate::mesh::{Mesh, Side};
 use crate::problem::sheet_energy::SheetEnergy;
 use crate::problem::{ClampedPlate, Measures, Model};
@@ -137,7 +137,8 @@ impl<'a> PlateCorrector<'a> {
         let corrector = self.corrector(stretch, known);
         let all = known == KnownConditions::ALL;
         let corrected = correct_by(&corrector, &model, data, data, stage, all);
-        let CorrectedField { state, correction } = corrected.map_err(at_stretch(stretch))?;
+        let CorrectedField { state, correction } =
+            corrected.map_err(at_stretch("corrector", stretch))?;
         Ok(CorrectedState {
             steps: correction.steps,
             multipliers: correction.multipliers,
@@ -227,7 +228,8 @@ impl<'a> PlateCorrector<'a> {
         };
         let model = self.problem.on(self.mesh, &self.energy);
         let state = state_at(&model, self.stage(stretch), field, convergence);
-        let mut corrected = Self::corrected(&model, state.map_err(at_stretch(stretch))?);
+        let mut corrected =
+            Self::corrected(&model, state.map_err(at_stretch("corrector", stretch))?);
         corrected.measures.force = climbed.force;
         Ok(CorrectedState {
             multipliers,
@@ -245,14 +247,5 @@ impl<'a> PlateCorrector<'a> {
             multipliers: Vec::new(),
             provenance: None,
         }
-    }
-}
-
-/// A fault of the correction at a stretch.
-fn at_stretch(stretch: f64) -> impl Fn(SolveFault) -> Error {
-    move |fault| Error::Solve {
-        model: "corrector".into(),
-        step: ClampedPlate::describe_step(stretch),
-        fault,
     }
 }

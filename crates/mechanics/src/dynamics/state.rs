@@ -1,7 +1,7 @@
 //! A moving body at one time: its forces, its energies, the data for its next step, and the methods to take it.
 
 use super::history::{EnergyBalance, Instant};
-use super::motion::{Motion, MovingSupport};
+use super::motion::{Motion, MovingSupport, Start};
 use super::step_forces::StepForces;
 use super::viscosity::Memory;
 use crate::error::SolveFault;
@@ -36,27 +36,20 @@ pub(super) struct BodyState {
 impl Motion<'_> {
     /// The body at time 0, accelerations included; where the velocity of a support jumps then, it is the one before.
     pub(super) fn begin(&self) -> Result<BodyState, SolveFault> {
-        let size = self.energy.unknowns();
-        let mut start = self.start.clone();
-        let mut acceleration = vec![0.0; size];
-        let imposed = [
-            &mut start.displacement,
-            &mut start.velocity,
-            &mut acceleration,
-        ];
-        self.impose(0.0, BEFORE_START, imposed.map(|values| &mut values[..]));
-        let rest = vec![0.0; size];
-        let past = if start.relaxed {
-            &start.displacement
-        } else {
-            &rest
-        };
-        let memory = self.viscosity.map_or(Ok(Memory::default()), |viscosity| {
-            Memory::relaxed(self.energy.connectivity(), viscosity, past)
-        });
-        let memory = memory.map_err(|fault| self.inverted(fault))?;
-        let motion = [start.displacement, start.velocity, acceleration];
-        let mut state = BodyState::unloaded(0.0, motion, memory);
+        let Start {
+            displacement,
+            velocity,
+            relaxed,
+        } = self.start.clone();
+        let rest = vec![0.0; self.energy.unknowns()];
+        let motion = [displacement, velocity, rest.clone()];
+        let mut state = BodyState::unloaded(0.0, motion, Memory::default());
+        state.impose(self, 0.0, BEFORE_START);
+        if let Some(viscosity) = self.viscosity {
+            let past = if relaxed { &state.displacement } else { &rest };
+            let memory = Memory::relaxed(self.energy.connectivity(), viscosity, past);
+            state.memory = memory.map_err(|fault| self.inverted(fault))?;
+        }
         self.evaluate(&mut state, 0.0)?;
         // The elements take the step to the start at once; from now on they remember it.
         state.memory = self.memory_after(&state.memory, &state, 0.0)?;

@@ -2,7 +2,7 @@
 
 use super::ratios::{Ratios, geometric_tail};
 use super::{
-    Climb, ClimbSolution, CorrectionHistory, Field, Inverted, Level, Provenance, at_stretch,
+    Climb, ClimbSolution, CorrectionHistory, Field, Inverted, Level, NAME, Provenance, at_stretch,
 };
 use crate::error::{Error, SolveFault};
 
@@ -129,7 +129,7 @@ impl Climb<'_> {
             Err(Inverted) => {
                 self.replace_by_load_path(&mut ascent, stretch)?;
                 let force = self.force(&ascent.field);
-                force.map_err(|fault| at_stretch(stretch)(fault.into()))?
+                force.map_err(|fault| at_stretch(NAME, stretch)(fault.into()))?
             }
         };
         Ok(ClimbSolution {

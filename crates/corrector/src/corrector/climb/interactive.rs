@@ -3,7 +3,8 @@
 use std::fmt;
 
 use super::{
-    Climb, ClimbSolution, CorrectionHistory, Ending, Field, ONLY_GRID_TOLERANCE, Provenance, Start,
+    Climb, ClimbSolution, CorrectionHistory, Ending, Field, NAME, ONLY_GRID_TOLERANCE, Provenance,
+    Start,
 };
 use crate::error::{Error, SolveFault};
 use crate::problem::{DeformedSheet, RigidMotion};
@@ -52,26 +53,6 @@ impl Climb<'_> {
             });
         }
         Ok(reached)
-    }
-}
-
-impl ClimbSolution {
-    /// A state found near another one.
-    fn near(
-        field: Field,
-        force: f64,
-        discretisation_error: f64,
-        reached: CorrectionHistory,
-    ) -> Self {
-        let nodes = field.components[0].len();
-        let cells = [nodes / field.width - 1, field.width - 1];
-        Self {
-            field,
-            force,
-            discretisation_error,
-            corrections: reached.corrections,
-            provenance: Provenance::from_start(Start::StatesBefore, cells),
-        }
     }
 }
 
@@ -135,7 +116,7 @@ impl<'a> Interactive<'a> {
             }
         }
         self.climbed = outcome.map_err(|fault| Error::Solve {
-            model: "corrector (climb)".into(),
+            model: NAME.into(),
             step: format!(
                 "a motion of the grips from {} to {grips} (also in {} parts; the previous field is kept: move them \
                  in smaller steps, or start anew at that stretch)",
@@ -159,8 +140,14 @@ impl<'a> Interactive<'a> {
             reached = Some((error, self.climb.near(&mut field, error)?));
         }
         let (error, reached) = reached.expect("one part at least");
-        let force = self.climb.force(&field)?;
-        Ok(ClimbSolution::near(field, force, error, reached))
+        let cells = self.climb.grid().cells();
+        Ok(ClimbSolution {
+            force: self.climb.force(&field)?,
+            field,
+            discretisation_error: error,
+            corrections: reached.corrections,
+            provenance: Provenance::from_start(Start::StatesBefore, cells),
+        })
     }
 
     /// Moves the grips by a share of the remaining motion, and the nodes between them in proportion.

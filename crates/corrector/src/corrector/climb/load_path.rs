@@ -5,10 +5,10 @@
 //! are shifted where they are not positive definite, load steps that are halved where they fail, and a diagnosis of
 //! why a path ends.
 
-use super::Climb;
 use super::ascent::Equilibrium;
 use super::grid::{Field, Grid};
 use super::start::stretch_per_unit;
+use super::{Climb, NAME};
 use crate::error::{Error, SolveFault};
 use crate::mesh::Mesh;
 use crate::problem::Model;
@@ -73,7 +73,7 @@ impl Climb<'_> {
         let guess = stretch_per_unit(self.problem.size, plate.grid, stretch);
         let model = self.problem.on(&plate.mesh, &plate.energy);
         model
-            .named("corrector (climb)")
+            .named(NAME)
             .describing(|element| plate.describe(element))
             .guessing(guess)
     }

@@ -1,8 +1,7 @@
 //! The Lagrange multipliers of a climbed field.
 
-use super::{Climb, ClimbSolution, Field};
+use super::{Climb, ClimbSolution, Field, at_stretch};
 use crate::error::{Error, SolveFault};
-use crate::problem::ClampedPlate;
 
 /// The multipliers' iteration ends at this share of its first correction.
 const TOLERANCE: f64 = 1e-7;
@@ -27,12 +26,8 @@ impl Climb<'_> {
         stretch: f64,
     ) -> Result<Vec<f64>, Error> {
         let multipliers = self.solve_multipliers(data, &climbed.field);
-        let fault = |fault| Error::Solve {
-            model: "multipliers".into(),
-            step: ClampedPlate::describe_step(stretch),
-            fault,
-        };
-        multipliers.map(|field| field.to_nodes()).map_err(fault)
+        let multipliers = multipliers.map(|field| field.to_nodes());
+        multipliers.map_err(at_stretch("multipliers", stretch))
     }
 
     /// Solves for the multipliers by the iteration, or by a sparse factor where the iteration does not converge.
