@@ -157,9 +157,8 @@ enum Trust {
 
 /// The length of steps.
 struct Pace {
-    /// The longest that the settings allow.
+    /// The longest that the settings allow; infinite where it is automatic.
     wanted: f64,
-    automatic: bool,
     /// The length in use.
     current: f64,
     /// Runs since it was last changed.
@@ -179,7 +178,6 @@ impl Pace {
                 Step::Automatic => f64::INFINITY,
                 Step::AtMost(step) => step,
             },
-            automatic: step == Step::Automatic,
             current: f64::INFINITY,
             runs: 0,
             patience: RUNS_BEFORE_GROWTH,
@@ -294,12 +292,11 @@ impl<'a> March<'a> {
 
     /// The longest step now, according to the settings, the integrator and halving.
     fn longest(&mut self, at: &BodyState) -> Result<f64, SolveFault> {
-        let limit = if self.pace.automatic {
-            self.stepper
-                .longest(self.motion, at)?
-                .unwrap_or(f64::INFINITY)
-        } else {
+        let limit = if self.pace.wanted.is_finite() {
             self.pace.wanted
+        } else {
+            let longest = self.stepper.longest(self.motion, at)?;
+            longest.unwrap_or(f64::INFINITY)
         };
         self.afford(at.time, limit)?;
         Ok(self.pace.within(limit))
