@@ -25,7 +25,7 @@ const PRINCIPAL: f64 = 0.25;
 
 /// The mode with the largest part in a motion of the whole body along an axis: (Σ mᵢ φᵢ)² over its unknowns is its effective
 /// mass. `None` where that is less than a quarter of the whole: bending has no part in a motion along a strip.
-pub fn strongest(modes: Vec<Mode>, mass: &[f64], axis: usize) -> Option<Mode> {
+fn strongest(modes: Vec<Mode>, mass: &[f64], axis: usize) -> Option<Mode> {
     let along = || (axis..mass.len()).step_by(2);
     let effective = |mode: &Mode| {
         along()
@@ -40,20 +40,16 @@ pub fn strongest(modes: Vec<Mode>, mass: &[f64], axis: usize) -> Option<Mode> {
         .map(|(_, mode)| mode)
 }
 
-/// The principal vibration along an axis about a displacement in mm, sought among an increasing number of the slowest
+/// The principal vibration along X about the body at rest, sought among an increasing number of the slowest
 /// ones: in slender strips many bending vibrations are slower. `None` where it is not among the first hundred.
 ///
 /// # Errors
 /// As [`slowest`].
-pub fn principal(
-    motion: &Motion,
-    held: &[bool],
-    displacement: &[f64],
-    axis: usize,
-) -> Result<Option<Mode>, SolveFault> {
+pub fn principal(motion: &Motion, held: &[bool]) -> Result<Option<Mode>, SolveFault> {
+    let rest = vec![0.0; held.len()];
     for count in [6, 24, 96] {
-        let modes = slowest(motion, held, displacement, count)?;
-        if let Some(mode) = strongest(modes, &motion.mass, axis) {
+        let modes = slowest(motion, held, &rest, count)?;
+        if let Some(mode) = strongest(modes, &motion.mass, 0) {
             return Ok(Some(mode));
         }
     }

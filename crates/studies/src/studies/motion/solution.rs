@@ -165,9 +165,8 @@ impl MovingSheet {
         let start = Clock::now();
         let motion = self.motion(model, viscosity)?;
         let held = motion.held(time.duration);
-        let rest = vec![0.0; motion.mass.len()];
         // A sheet that can move freely has no slowest vibration.
-        let longitudinal = principal(&motion, &held, &rest, 0).ok().flatten();
+        let longitudinal = principal(&motion, &held).ok().flatten();
         let (history, end) = match follow(&motion, time, progress) {
             Ok(history) => (history, None),
             Err(end) => {
