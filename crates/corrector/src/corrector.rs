@@ -36,7 +36,7 @@ mod step;
 mod system;
 
 pub use condition::{Condition, Equilibrium, Function, Linear, Linearisation};
-pub use correction::{ByNumber, Correction, CorrectorSettings, Describe, Multipliers, Step};
+pub use correction::{Correction, CorrectorSettings, Describe, Multipliers, Step};
 pub use difference_scheme::DifferenceScheme;
 pub use factor::{Factor, Projection, Solver};
 pub use matrix::CorrectionMatrix;

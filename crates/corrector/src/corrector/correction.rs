@@ -42,10 +42,7 @@ pub trait Describe {
 }
 
 /// Names by number.
-#[derive(Clone, Copy, Debug)]
-pub struct ByNumber;
-
-impl Describe for ByNumber {}
+impl Describe for () {}
 
 /// The Lagrange multipliers of one condition.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,7 +1,7 @@
 //! The conditions on a field, and their linearisation.
 
 use super::condition::Condition;
-use super::correction::{ByNumber, CorrectorSettings, Describe, Multipliers};
+use super::correction::{CorrectorSettings, Describe, Multipliers};
 use super::dependence;
 use super::factor::{Factor, Solver, row_scales};
 use crate::error::SolveFault;
@@ -51,7 +51,7 @@ impl<'a> Corrector<'a> {
             conditions,
             weights,
             settings,
-            names: &ByNumber,
+            names: &(),
         }
     }
 
