@@ -318,7 +318,7 @@ impl<'a> Fit<'a> {
         signals: &(SignalSpline, SignalSpline),
     ) -> Identification {
         let joint = self.joint;
-        let corners = corners(&joint.recording.extension);
+        let corners = corners(&joint.recording.times, &joint.recording.extension);
         // Where a spline cannot follow the motion, instants of the recording would wrongly seem suspect.
         let suspects = if !signals.0.coarse && !signals.1.coarse && corners.is_none() {
             examine(joint, &self.state, &identification, fit)
