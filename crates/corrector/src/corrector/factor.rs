@@ -29,7 +29,7 @@ use crate::solve::{FactorFault, SparseLu, SparseRows};
 
 mod forms;
 
-use forms::{Form, Symmetric, cholesky, dense, kkt, project_cholesky, project_dense, project_kkt};
+use forms::{Form, Symmetric, cholesky, kkt, project_cholesky, project_dense, project_kkt};
 pub use forms::{Projection, row_scales};
 pub(super) use forms::{project_curved, weighted_qr};
 
@@ -84,7 +84,10 @@ impl Factor {
     ) -> Result<Self, FactorFault> {
         let form = match solver {
             Solver::Automatic => return Self::automatic(jacobian, weights, unknowns),
-            Solver::Dense => dense(&jacobian, &weights)?,
+            Solver::Dense => {
+                let (q, r) = weighted_qr(&jacobian, &weights)?;
+                Form::Dense { q, r }
+            }
             Solver::Cholesky => cholesky(&jacobian, &weights)?,
             Solver::Kkt => Form::Kkt(SparseLu::new(kkt(&jacobian, &weights, None))?),
             Solver::Symmetric => {

@@ -82,13 +82,7 @@ impl Stepper for Central {
         motion.evaluate(&mut after, step)?;
         let damped = motion.viscosity.is_some_and(Viscosity::depends_on_rates);
         if damped {
-            let assembly = self.assembly.as_ref().expect("prepared");
-            let end = DampedEnd {
-                motion,
-                assembly,
-                step,
-            };
-            end.solve(&mut after)?;
+            self.end_damped(motion, &mut after, step)?;
         }
         motion.accelerate(&mut after, held)?;
         if !damped {
@@ -108,20 +102,19 @@ impl Stepper for Central {
     }
 }
 
-/// The end of a step with viscous forces: M (u̇₁ − u̇½) = ½ h (f − ∂Π/∂u − f_v(u₁, u̇₁)) for u̇₁.
-struct DampedEnd<'a> {
-    motion: &'a Motion<'a>,
-    assembly: &'a Assembly,
-    step: f64,
-}
-
-impl DampedEnd<'_> {
-    /// Newton's method with conjugate gradients; on entry the velocity is that of half the step.
-    fn solve(&self, after: &mut BodyState) -> Result<(), SolveFault> {
+impl Central {
+    /// The end of a step with viscous forces: M (u̇₁ − u̇½) = ½ h (f − ∂Π/∂u − f_v(u₁, u̇₁)) for u̇₁, by Newton's method with conjugate
+    /// gradients, whose preconditioner is the diagonal; on entry the velocity is that of half the step.
+    fn end_damped(
+        &self,
+        motion: &Motion,
+        after: &mut BodyState,
+        step: f64,
+    ) -> Result<(), SolveFault> {
         const ITERATIONS: usize = 30;
         const TOLERANCE: f64 = 1e-12;
-        let (motion, half) = (self.motion, 0.5 * self.step);
-        let free = self.assembly.free();
+        let assembly = self.assembly.as_ref().expect("prepared");
+        let (free, pattern, half) = (assembly.free(), assembly.pattern(), 0.5 * step);
         let start = after.velocity.clone();
         let mut scale = 0.0_f64;
         for iteration in 0..ITERATIONS {
@@ -144,27 +137,20 @@ impl DampedEnd<'_> {
             if !most.is_finite() || iteration + 1 == ITERATIONS {
                 break;
             }
-            let damping = motion.damping(self.assembly, after, self.step)?;
-            let change = self.change(&damping, &defect);
+            let damping = motion.damping(assembly, after, step)?;
+            let mut values: Vec<f64> = damping.iter().map(|c| half * c).collect();
+            for (i, position) in free.iter().zip(pattern.diagonal()) {
+                values[*position] += motion.mass[*i];
+            }
+            let change = solve_by_diagonal(pattern, &values, &defect);
             for (i, change) in free.iter().zip(change) {
                 after.velocity[*i] += change;
             }
-            motion.evaluate_viscous(after, self.step)?;
+            motion.evaluate_viscous(after, step)?;
         }
         Err(SolveFault::Explodes {
             time: after.time,
-            step: self.step,
+            step,
         })
-    }
-
-    /// (M + ½ h C)⁻¹ b by conjugate gradients with the diagonal as their preconditioner.
-    fn change(&self, damping: &[f64], b: &[f64]) -> Vec<f64> {
-        let pattern = self.assembly.pattern();
-        let half = 0.5 * self.step;
-        let mut values: Vec<f64> = damping.iter().map(|c| half * c).collect();
-        for (i, position) in self.assembly.free().iter().zip(pattern.diagonal()) {
-            values[*position] += self.motion.mass[*i];
-        }
-        solve_by_diagonal(pattern, &values, b)
     }
 }

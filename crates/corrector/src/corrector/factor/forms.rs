@@ -78,11 +78,6 @@ pub(super) fn kkt(
     system
 }
 
-pub(super) fn dense(jacobian: &SparseRows, weights: &[f64]) -> Result<Form, FactorFault> {
-    let (q, r) = weighted_qr(jacobian, weights)?;
-    Ok(Form::Dense { q, r })
-}
-
 /// Q (n × m, orthonormal columns) and R (m × m) of W^(−½) Bᵀ = Q R.
 pub(in crate::corrector) fn weighted_qr(
     jacobian: &SparseRows,
