@@ -47,15 +47,6 @@ fn instants(
     (0..count).step_by(within).map(instant).collect()
 }
 
-/// No corrected motion, and why.
-fn none(note: String) -> Correction {
-    Correction {
-        motion: None,
-        note,
-        end: None,
-    }
-}
-
 /// The least number of steps in a period of the first longitudinal vibration.
 const STEPS: f64 = 200.0;
 /// β of Newmark's average acceleration.
@@ -85,10 +76,13 @@ impl MovingSheet {
     /// Corrects the motion of the springs on the mesh of the corrected field; only a note where the equation of motion cannot be written for three
     /// consecutive instants.
     pub fn correct(&self, springs: &ModelMotion, progress: Progress) -> Result<Correction, Error> {
+        let uncorrected = |note: String| Correction {
+            note,
+            ..Correction::default()
+        };
         if !self.is_corrected {
-            return Ok(none(
-                "The study disables the correction of the motion.".into(),
-            ));
+            let note = "The study disables the correction of the motion.";
+            return Ok(uncorrected(note.into()));
         }
         let clock = Clock::now();
         let mesh = self.corrected_mesh();
@@ -106,7 +100,7 @@ impl MovingSheet {
             Ok(equation) => equation,
             Err(reason) => {
                 let note = format!("The motion of the springs is not corrected: {reason}.");
-                return Ok(none(note));
+                return Ok(uncorrected(note));
             }
         };
         let onto_mesh = springs.mesh.interpolation_on(&mesh);

@@ -34,6 +34,7 @@ pub struct ModelMotion {
 }
 
 /// The correction of the springs' motion.
+#[derive(Default)]
 pub struct Correction {
     /// The corrected motion at the instants that are written; `None` where there is none.
     pub motion: Option<ModelMotion>,
