@@ -37,9 +37,9 @@ impl Measure {
             return;
         }
         if let Some(shown) = table.shown(Model::Corrected)
-            && self.last != Some(shown.grip)
+            && self.last != shown.grip
         {
-            self.last = Some(shown.grip);
+            self.last = shown.grip;
             self.solved.push(shown.seconds);
         }
         if self.last.is_none() {

@@ -10,7 +10,7 @@ use super::deviations::Deviation;
 use super::engine::{Answer, Fault, Solved, Task, meshes};
 use super::history::History;
 use super::playing::Playing;
-use super::scene::{CardFile, Grip, Known, Look, Model, Scene};
+use super::scene::{CardFile, Grip, Known, Look, Model, Outline, Scene};
 
 /// What a user does.
 #[derive(Clone, Debug)]
@@ -47,14 +47,21 @@ pub enum Action {
 /// A result with the place of the grip that it belongs to.
 #[derive(Clone, Debug)]
 pub struct Shown {
-    /// Where the grip was.
-    pub grip: Grip,
+    /// Where the grip was; nothing where the sheet, or what is known of it, has changed since.
+    pub grip: Option<Grip>,
     /// Whether it is exact.
     pub settled: bool,
     /// What was found.
     pub solved: Solved,
     /// Computing time in s.
     pub seconds: f64,
+}
+
+impl Shown {
+    /// It stays to be seen until there is another one.
+    fn outdate(&mut self) {
+        self.grip = None;
+    }
 }
 
 /// The question that a model was solved for; it is solved again for another one.
@@ -153,7 +160,7 @@ impl Table {
     pub fn warnings(&self) -> &[Finding] {
         let held = self
             .shown(Model::Elements)
-            .filter(|_| self.played().is_none());
+            .filter(|shown| shown.grip.is_some() && self.played().is_none());
         held.map_or(&[], |shown| &shown.solved.warnings)
     }
 
@@ -197,12 +204,11 @@ impl Table {
 
     /// Whether all models that are wanted are exact and where the grip is.
     pub fn is_settled(&self) -> bool {
-        let grip = self.scene().grip;
-        let at_rest = |model: Model| {
-            let shown = self.shown(model);
-            shown.is_some_and(|shown| shown.settled && shown.grip == grip)
-                || self.fault(model).is_some()
-        };
+        let (grip, colour) = (Some(self.scene().grip), self.scene().look.colour);
+        let exact =
+            |shown: &Shown| shown.settled && shown.grip == grip && shown.solved.colour == colour;
+        let at_rest =
+            |model: Model| self.shown(model).is_some_and(exact) || self.fault(model).is_some();
         !self.holding && self.wanted().all(at_rest)
     }
 
@@ -251,6 +257,11 @@ impl Table {
     fn lay_out(&mut self) {
         let scene = self.scene.now();
         let pulled = ([0.0, scene.grip.displacement[1]], scene.grip.angle);
+        if scene.look.known != self.known && scene.outline == Outline::Plate {
+            let corrected = Model::Corrected as usize;
+            self.shown[corrected].iter_mut().for_each(Shown::outdate);
+            (self.asked[corrected], self.deviations[corrected]) = (None, None);
+        }
         if pulled != self.pulled || scene.look.known != self.known {
             (self.pulled, self.known) = (pulled, scene.look.known);
             self.curves = Default::default();
@@ -268,6 +279,8 @@ impl Table {
             self.sheets += 1;
         }
         self.sheet = self.scene.now().clone();
+        self.shown.iter_mut().flatten().for_each(Shown::outdate);
+        self.asked = [None, None, None];
         self.faults = [None, None, None];
         self.deviations = [None; 2];
         self.curves = Default::default();
@@ -300,7 +313,7 @@ impl Table {
         let plain = Scene::default().look;
         let colour = scene.look.colour;
         let known = match model {
-            Model::Corrected => scene.look.known,
+            Model::Corrected if scene.outline == Outline::Plate => scene.look.known,
             _ => plain.known,
         };
         let mut asked = scene.clone();
@@ -337,7 +350,7 @@ impl Table {
 
     fn springs_at_grip(&self) -> Option<&Solved> {
         let shown = self.shown(Model::Springs)?;
-        (shown.grip == self.scene().grip).then_some(&shown.solved)
+        (shown.grip == Some(self.scene().grip)).then_some(&shown.solved)
     }
 
     /// Takes the answer to a task; those of another sheet are ignored.
@@ -358,7 +371,7 @@ impl Table {
                     self.curves[index].insert(at, solved.force[0]);
                 }
                 self.shown[index] = Some(Shown {
-                    grip: answer.grip,
+                    grip: Some(answer.grip),
                     settled: answer.settled,
                     solved,
                     seconds: answer.seconds,

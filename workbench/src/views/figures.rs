@@ -5,7 +5,7 @@ use eframe::egui::{Grid, RichText, Ui};
 use gelbench_report::results::{Finding, Line, LineChart, Stroke, from_rest};
 
 use crate::logic::engine::Fault;
-use crate::logic::scene::Model;
+use crate::logic::scene::{Grip, Model};
 use crate::logic::table::Table;
 
 /// Force over stretch of all models that are shown: the points that were computed, and nothing between them.
@@ -64,11 +64,13 @@ pub fn table(ui: &mut Ui, table: &Table) {
 
 fn row(ui: &mut Ui, table: &Table, model: Model, moment: bool) {
     ui.label(model.name());
-    // A model that is not computed any more stays where it was: its figures belong to another grip.
+    // A model that is not computed any more, or has no solution, stays where it was: its figures belong to another grip or sheet.
     let scene = table.scene();
-    let followed = scene.look.models[model as usize] || model == Model::Elements;
+    let followed = (scene.look.models[model as usize] || model == Model::Elements)
+        && table.fault(model).is_none();
+    let is_valid = |grip: Grip| followed || grip == scene.grip;
     let shown = table.shown(model);
-    match shown.filter(|shown| followed || shown.grip == scene.grip) {
+    match shown.filter(|shown| shown.grip.is_some_and(is_valid)) {
         Some(shown) => {
             let [x, y] = shown.solved.force;
             ui.monospace(format!("{:9.4} {:9.4}", rounded(x, 4), rounded(y, 4)));

@@ -7,14 +7,14 @@ use crate::logic::scene::{Colour, Model, Scene};
 impl Table {
     /// Compares the models that have the grip where the finite elements have it.
     pub(super) fn compare(&mut self) {
-        let Some(elements) = self.shown(Model::Elements) else {
+        let (Some(elements), Ok([lattice, _])) = (self.shown(Model::Elements), &self.meshes) else {
             return;
         };
-        let Ok([lattice, _]) = &self.meshes else {
+        let Some(grip) = elements.grip else {
             return;
         };
         let scene = Scene {
-            grip: elements.grip,
+            grip,
             ..self.scene().clone()
         };
         let of = |model: Model| {
@@ -26,13 +26,13 @@ impl Table {
         self.deviations = [Model::Springs, Model::Corrected].map(of);
     }
 
-    /// What colours the nodes of a model, and whether it belongs to the place that the model is shown at.
+    /// What colours the nodes of a model; nothing where it is not known there.
     pub fn values(&self, model: Model) -> Option<Vec<f64>> {
         let shown = self.shown(model)?;
         let solved = &shown.solved;
-        if self.scene().look.colour != Colour::Distance {
-            let fits = solved.values.len() * 2 == solved.displacement.len();
-            return fits.then(|| solved.values.clone());
+        let colour = self.scene().look.colour;
+        if colour != Colour::Distance {
+            return (solved.colour == colour).then(|| solved.values.clone());
         }
         if model == Model::Elements {
             return Some(vec![0.0; solved.displacement.len() / 2]);

@@ -40,7 +40,7 @@ impl Table {
             let shown = self
                 .shown(model)
                 .filter(|_| scene.look.models[model as usize])?;
-            (shown.grip == scene.grip).then(|| shown.solved.displacement.clone())
+            (shown.grip == Some(scene.grip)).then(|| shown.solved.displacement.clone())
         };
         let starts = Model::ALL.map(start);
         if starts.iter().all(Option::is_none) {
@@ -115,7 +115,7 @@ impl Table {
         let shown = self.shown(model)?;
         Some(Drawn {
             displacement: (&shown.solved.displacement[..]).into(),
-            follows: self.played().is_none() && shown.grip == self.scene().grip,
+            follows: self.played().is_none() && shown.grip == Some(self.scene().grip),
         })
     }
 

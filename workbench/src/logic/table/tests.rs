@@ -1,6 +1,7 @@
 use super::*;
 use crate::logic::background::Worker;
 use crate::logic::engine::Engine;
+use crate::logic::scene::Colour;
 
 fn small() -> Scene {
     Scene {
@@ -156,4 +157,40 @@ fn a_corrector_that_is_told_less_is_solved_anew_and_begins_another_curve() {
     assert!(table.is_settled());
     assert_eq!(table.curve(Model::Corrected).len(), 1);
     assert!(table.deviation(Model::Corrected).unwrap().departure > 5.0 * full);
+}
+
+#[test]
+fn what_was_solved_for_another_sheet_or_colour_is_not_taken_for_the_present_one() {
+    let (mut table, mut engine) = (Table::new(small()), Engine::default());
+    settle(&mut table, &mut engine);
+    let change = |table: &mut Table, scene: Scene| {
+        table.act(Action::Change {
+            scene: Box::new(scene),
+            gesture: false,
+        });
+    };
+    let mut scene = table.scene().clone();
+    scene.look.colour = Colour::Stretch;
+    change(&mut table, scene.clone());
+    assert!(!table.is_settled() && table.values(Model::Springs).is_none());
+    settle(&mut table, &mut engine);
+    assert!(table.is_settled() && table.values(Model::Springs).is_some());
+    scene.thickness = 3.0;
+    change(&mut table, scene);
+    assert!(!table.is_settled() && !table.drawn(Model::Springs).unwrap().follows);
+    let springs = table.tasks().remove(0);
+    table.take(engine.answer(&springs));
+    assert!(table.drawn(Model::Springs).unwrap().follows);
+    let deviation = table.deviation(Model::Springs);
+    assert!(deviation.is_none(), "the finite elements are thinner");
+}
+
+#[test]
+fn shapes_other_than_plates_are_corrected_with_all_that_is_known() {
+    let [_, (_, outline), ..] = Outline::all(small().size);
+    let mut scene = Scene { outline, ..small() };
+    scene.look.known.free_edges = false;
+    let tasks = Table::new(scene).tasks();
+    assert_eq!(tasks.len(), 3);
+    assert!(tasks.iter().all(|task| task.scene.look.known == Known::ALL));
 }

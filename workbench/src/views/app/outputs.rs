@@ -54,9 +54,10 @@ impl Workbench {
     }
 
     fn sheet_offers(&self) -> Vec<Offer> {
-        let scene = self.table.scene();
+        let mut scene = self.table.scene().clone();
+        scene.look.colour = self.table.shown_colour();
         let field = |model: Model| -> Option<ShownField> {
-            let drawn = self.table.drawn(model)?;
+            let drawn = self.table.drawn(model).filter(|drawn| drawn.follows)?;
             let values = self.table.drawn_values(model).unwrap_or_default();
             Some((model, drawn.displacement.into_owned(), values))
         };
