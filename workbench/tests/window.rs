@@ -3,7 +3,7 @@
 use eframe::egui::{Key, Modifiers, Rect, pos2, vec2};
 use egui_kittest::kittest::Queryable;
 use gelbench_report::results::Stroke;
-use gelbench_workbench::logic::scene::Model;
+use gelbench_workbench::logic::scene::{Grip, Model, Outline, Scene};
 use gelbench_workbench::views::app::{Tab, Workbench};
 use gelbench_workbench::views::guide::Shows;
 
@@ -91,6 +91,23 @@ fn the_grip_follows_the_keys() {
             .iter()
             .all(|model| state(&bench).table.fault(*model).is_none())
     );
+}
+
+#[test]
+fn controls_leave_what_lies_beyond_their_range_as_it_is() {
+    let scene = Scene {
+        outline: Outline::Hole { diameter: 20.0 },
+        thickness: 0.005,
+        cells: [10, 3],
+        grip: Grip {
+            displacement: [30.0, 75.0],
+            angle: 1.3,
+        },
+        ..small()
+    };
+    let mut bench = window([1400.0, 900.0], scene.clone());
+    bench.run_steps(2);
+    assert_eq!(*state(&bench).table.scene(), scene);
 }
 
 #[test]

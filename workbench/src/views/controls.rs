@@ -1,6 +1,6 @@
 //! The panel beside the sheet: its shape, its card, its grip, and what is shown of it.
 
-use eframe::egui::{ComboBox, DragValue, Margin, RichText, Slider, Ui};
+use eframe::egui::{ComboBox, DragValue, Margin, RichText, Slider, SliderClamping, Ui};
 
 use gelbench::material::registry::CARDS;
 
@@ -46,6 +46,7 @@ fn length(ui: &mut Ui, name: &str, value: &mut f64, hold: &mut Hold) {
         let drag = DragValue::new(value)
             .speed(0.1)
             .range(0.01..=10_000.0)
+            .clamp_existing_to_range(false)
             .suffix(" mm");
         hold(ui.add(drag).labelled_by(label.id));
     });
@@ -89,6 +90,7 @@ fn outline(ui: &mut Ui, scene: &mut Scene, hold: &mut Hold) {
     let mut cells = scene.cells[1];
     let slider = Slider::new(&mut cells, CELLS[0]..=CELLS[1])
         .step_by(2.0)
+        .clamping(SliderClamping::Edits)
         .logarithmic(true);
     let response = ui.add(slider.text("cells across"));
     if response.changed() {
@@ -129,7 +131,7 @@ fn grip(ui: &mut Ui, scene: &mut Scene, hold: &mut Hold) {
     let mut stretch = 100.0 * scene.stretch();
     let slider = Slider::new(&mut stretch, -20.0..=150.0)
         .suffix(" %")
-        .clamping(eframe::egui::SliderClamping::Never);
+        .clamping(SliderClamping::Never);
     let response = ui.add(slider.text("stretch"));
     if response.changed() {
         scene.grip.displacement[0] = stretch / 100.0 * length;
@@ -139,11 +141,13 @@ fn grip(ui: &mut Ui, scene: &mut Scene, hold: &mut Hold) {
         &mut scene.grip.displacement[1],
         -0.4 * length..=0.4 * length,
     );
+    let across = across.clamping(SliderClamping::Edits);
     hold(ui.add(across.suffix(" mm").text("across")));
     // Without the sign of a zero.
     let mut degrees = scene.grip.angle.to_degrees() + 0.0;
     let response = ui.add(
         Slider::new(&mut degrees, -60.0..=60.0)
+            .clamping(SliderClamping::Edits)
             .suffix(" °")
             .text("rotation"),
     );
