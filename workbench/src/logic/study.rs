@@ -6,6 +6,9 @@
 
 use std::path::Path;
 
+use serde::Deserialize;
+use toml::Spanned;
+
 use gelbench::budget::Budget;
 use gelbench::error::Error;
 use gelbench::kinds::kind_of;
@@ -14,6 +17,7 @@ use gelbench::mesh::Shape;
 use gelbench::problem::Support;
 use gelbench::studies::plate;
 use gelbench::units::Linear;
+use gelbench_base::document::quoted;
 use gelbench_base::units::could_be_stretch_ratios;
 use gelbench_studies::studies::specimen::{self, Along, Specimen};
 
@@ -55,8 +59,9 @@ impl Scene {
         format!(
             "kind = \"plate\"\ntitle = \"Clamped plate\"\n\n\
              [plate]\nlength = \"{length} mm\"\nwidth = \"{width} mm\"\nthickness = \"{} mm\"\ncells = [{nx}, {ny}]\n\n\
-             [material]\ncard = \"{card}\"\n\n[load]\nstretches = [{}]\n",
+             [material]\ncard = {}\n\n[load]\nstretches = [{}]\n",
             self.thickness,
+            quoted(card),
             stretch_text(stretch)
         )
     }
@@ -86,13 +91,15 @@ impl Scene {
         };
         let [x, y] = grip.lines(0.0).map(|line| written(&line));
         format!(
-            "kind = \"specimen\"\ntitle = \"Sheet between two grips\"\n\n[material]\ncard = \"{card}\"\n\n\
+            "kind = \"specimen\"\ntitle = \"Sheet between two grips\"\n\n[material]\ncard = {}\n\n\
              [specimen]\nshape = \"{shape}\"\nlength = \"{length} mm\"\nwidth = \"{width} mm\"\n{measures}\
              thickness = \"{} mm\"\ncells = {}\n\n\
              [[support]]\ngroup = \"left\"\nkind = \"clamp\"\n\n\
              [[support]]\ngroup = \"right\"\nkind = \"displacement\"\nx = \"{x}\"\ny = \"{y}\"\n\n\
              [path]\nfactors = [0.25, 0.5, 0.75, 1.0]\nmeasured_group = \"right\"\n",
-            self.thickness, self.cells[1]
+            quoted(card),
+            self.thickness,
+            self.cells[1]
         )
     }
 
@@ -105,13 +112,14 @@ impl Scene {
         let enclosed = enclosed.and_then(|card| serde_json::from_str(card).ok());
         // A card that is known is newer than the one that the study was saved with.
         let cards: Vec<CardFile> = cards.iter().cloned().chain(enclosed).collect();
-        let (text, known_card) = with_known_card(text, &cards);
+        let known = with_known_card(text, &cards);
+        let study = known.as_ref().map_or(text, |(study, _)| study);
         let shown = text.lines().find_map(|line| line.strip_prefix(LOOK));
         let look = shown.and_then(|look| serde_json::from_str(look).ok());
-        let scene = match kind_of(&file.display().to_string(), &text)? {
-            None => of_specimen(plate::load(file, &text, Budget::USUAL)?.content)?,
+        let scene = match kind_of(&file.display().to_string(), study)? {
+            None => of_specimen(plate::load(file, study, Budget::USUAL)?.content)?,
             Some(kind) if kind.name == specimen::KIND => {
-                of_specimen(specimen::load(kind, file, &text, Budget::USUAL)?.content)?
+                of_specimen(specimen::load(kind, file, study, Budget::USUAL)?.content)?
             }
             Some(kind) => {
                 return Err(Error::input(
@@ -124,7 +132,7 @@ impl Scene {
             }
         };
         Ok(Self {
-            card: known_card.unwrap_or(scene.card),
+            card: known.map_or(scene.card, |(_, card)| card),
             look: look.unwrap_or(scene.look),
             ..scene
         })
@@ -143,26 +151,25 @@ fn written(line: &Linear) -> String {
     }
 }
 
-/// The study with a shipped card in place of one that it names by its file, and that one.
-fn with_known_card(text: &str, cards: &[CardFile]) -> (String, Option<CardFile>) {
-    let unchanged = || (text.to_owned(), None);
-    let Ok(mut table) = text.parse::<toml::Table>() else {
-        return unchanged();
-    };
-    let material = table
-        .get_mut("material")
-        .and_then(toml::Value::as_table_mut);
-    let Some(named) = material.and_then(|material| material.get_mut("card")) else {
-        return unchanged();
-    };
-    let known = |card: &&CardFile| Some(card.reference().as_str()) == named.as_str();
-    let Some(known) = cards.iter().filter(|card| !card.is_shipped()).find(known) else {
-        return unchanged();
-    };
-    *named = "neo-hooke".into();
-    let comments = text.lines().filter(|line| line.starts_with(LOOK));
-    let comments: String = comments.map(|line| format!("{line}\n")).collect();
-    (format!("{comments}{table}"), Some(known.clone()))
+/// What a study says of its card.
+#[derive(Deserialize)]
+struct Named {
+    material: NamedCard,
+}
+
+#[derive(Deserialize)]
+struct NamedCard {
+    card: Spanned<String>,
+}
+
+/// The study with a shipped card in place of one that it names by its file, line by line as it was, and that one.
+fn with_known_card(text: &str, cards: &[CardFile]) -> Option<(String, CardFile)> {
+    let card = toml::from_str::<Named>(text).ok()?.material.card;
+    let mut own = cards.iter().filter(|known| !known.is_shipped());
+    let known = own.find(|known| known.reference() == *card.get_ref())?;
+    let mut study = text.to_owned();
+    study.replace_range(card.span(), "\"neo-hooke\"");
+    Some((study, known.clone()))
 }
 
 fn card_file(card: Card) -> CardFile {
@@ -328,6 +335,13 @@ mod tests {
         let others = text.lines().filter(|line| !line.starts_with(CARD));
         let bare = others.collect::<Vec<_>>().join("\n");
         assert_eq!(open(&bare, &[scene.card.clone()]).unwrap(), scene);
+        let wrong = text.replace("width = ", "wide = ");
+        let line = 1 + wrong
+            .lines()
+            .position(|line| line.starts_with("wide"))
+            .unwrap();
+        let fault = open(&wrong, &[]).unwrap_err().to_string();
+        assert!(fault.contains(&format!("saved.toml:{line}")), "{fault}");
         let fault = open(&bare, &[]).unwrap_err();
         assert!(fault.to_string().contains("my gel.toml"), "{fault}");
     }
