@@ -144,11 +144,13 @@ impl Worker for FieldCorrector {
 
 /// Does something with the files of a question, and with no others.
 fn with_files_of<T>(question: &FieldQuestion, work: impl FnOnce() -> T) -> T {
-    let card = &question.card;
-    let card_file = (card.reference(), card.text.clone().into_bytes());
     let files = question.files.iter().chain(&question.edge_file).cloned();
-    let files: Vec<NamedFile> = files.chain([card_file]).collect();
+    let files: Vec<NamedFile> = files.chain([card_file(&question.card)]).collect();
     with_files(paths(&files), work)
+}
+
+fn card_file(card: &CardFile) -> NamedFile {
+    (card.reference(), card.text.clone().into_bytes())
 }
 
 fn answer(question: &FieldQuestion) -> Result<FieldAnswer, Error> {
@@ -230,6 +232,8 @@ pub fn files(question: &FieldQuestion) -> Result<Vec<NamedFile>, Error> {
         files.push((KNOWN.to_owned(), known.into_bytes()));
         let edge = question.edge_file.iter();
         files.extend(edge.filter(|(name, _)| name == DRAWN).cloned());
+        let card = &question.card;
+        files.extend((!card.is_shipped()).then(|| card_file(card)));
         let again = format!("{}\n", question.command());
         files.push(("command.txt".to_owned(), again.into_bytes()));
         Ok(files)
@@ -248,18 +252,17 @@ impl FieldQuestion {
 
     /// The line of the command that does the same.
     pub fn command(&self) -> String {
+        let plain = |letter: char| letter.is_alphanumeric() || "_-+=,.:/%@".contains(letter);
         let quoted = |text: &str| {
-            if text.contains([' ', '\'', '"', '$', '(', ';', '&']) {
-                format!("'{}'", text.replace('\'', "'\\''"))
-            } else {
+            if text.chars().all(plain) {
                 text.to_owned()
+            } else {
+                format!("'{}'", text.replace('\'', "'\\''"))
             }
         };
         let names = self.files.iter().map(|(name, _)| quoted(name));
-        let mut words: Vec<String> = ["gelbench".to_owned(), "correct".to_owned()]
-            .into_iter()
-            .chain(names)
-            .collect();
+        let mut words = vec!["gelbench correct".to_owned()];
+        words.extend(names);
         let card = self.card.reference();
         let edge = self.mask_and_outline().map(Option::unwrap_or_default);
         let mut question = self.clone();

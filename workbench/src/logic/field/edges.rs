@@ -53,17 +53,24 @@ impl Edge {
     /// The condition of the edge called `name` for the corrector; nothing where the data decide.
     ///
     /// # Errors
-    /// [`Error::Input`] where a displacement is no length.
+    /// [`Error::Input`] where a displacement is no length, or none is stated.
     pub fn condition(&self, name: &str) -> Result<Option<EdgeCondition>, Error> {
         Ok(Some(match self {
             Self::Unnamed => return Ok(None),
             Self::Free => EdgeCondition::Free,
             Self::Rigid => EdgeCondition::Rigid,
             Self::Unknown => EdgeCondition::Unknown,
-            Self::Known([x, y]) => EdgeCondition::Known([
-                length(&format!("ux of the edge {name}"), x)?,
-                length(&format!("uy of the edge {name}"), y)?,
-            ]),
+            Self::Known([x, y]) => {
+                let x = length(&format!("ux of the edge {name}"), x)?;
+                let y = length(&format!("uy of the edge {name}"), y)?;
+                if (x, y) == (None, None) {
+                    return Err(Error::input(
+                        format!("the edge {name} is known, but its displacement is not stated"),
+                        "write ux, uy, or both, such as \"5 mm\"",
+                    ));
+                }
+                EdgeCondition::Known([x, y])
+            }
         }))
     }
 
@@ -204,8 +211,13 @@ mod tests {
                 "{text}"
             );
         }
-        let wrong = Edge::Known(["twelve".into(), String::new()]);
-        let fault = wrong.condition("right").unwrap_err().to_string();
-        assert!(fault.contains("ux of the edge right"), "{fault}");
+        for (x, fault) in [
+            ("twelve", "ux of the edge right"),
+            (" ", "the edge right is known"),
+        ] {
+            let wrong = Edge::Known([x.into(), String::new()]);
+            let told = wrong.condition("right").unwrap_err().to_string();
+            assert!(told.contains(fault), "{told}");
+        }
     }
 }

@@ -125,8 +125,11 @@ fn field() -> FieldQuestion {
 
 #[test]
 fn a_correction_goes_out_as_the_command_writes_it() {
+    let mut question = field();
+    question.card.name = "my gel".into();
+    question.card.text.push_str("\n# changed\n");
     let written = Writer
-        .answer(&Wanted::Correction(Box::new(field())))
+        .answer(&Wanted::Correction(Box::new(question)))
         .unwrap();
     assert_eq!(written.name, "measured_plate");
     let names = names(&written);
@@ -145,6 +148,7 @@ fn a_correction_goes_out_as_the_command_writes_it() {
         "vtk/view.py",
         "known.toml",
         "command.txt",
+        "my gel.toml",
     ] {
         assert!(names.contains(&name), "{name} is not among {names:?}");
     }
@@ -152,7 +156,7 @@ fn a_correction_goes_out_as_the_command_writes_it() {
     let command = written.files.iter().find(|(name, _)| name == "command.txt");
     assert_eq!(
         String::from_utf8_lossy(&command.unwrap().1),
-        "gelbench correct measured_plate.csv --material pva-10 --thickness '2 mm' --cell-size '10 mm' --study known.toml\n"
+        "gelbench correct measured_plate.csv --material 'my gel.toml' --thickness '2 mm' --cell-size '10 mm' --study known.toml\n"
     );
 }
 

@@ -286,9 +286,9 @@ fn placed_in_words(files: &[(PathBuf, Vec<u8>)], outgoing: &Outgoing) -> String 
             )
         }
         _ => {
-            let folder = files
-                .first()
-                .and_then(|(path, _)| path.parent())
+            let folders = files.iter().filter_map(|(path, _)| path.parent());
+            let folder = folders
+                .min_by_key(|folder| folder.components().count())
                 .map_or_else(String::new, |folder| folder.display().to_string());
             format!("{} files in {folder}", files.len())
         }
