@@ -329,8 +329,12 @@ def correct(
     if not (own > 0.0).any() and sum(one["rows"] for one in listed) < given.size:
         hint = "give measured entries a positive weight, or state as many conditions as unknowns"
         raise fault("weights", "are all zero, and the conditions alone do not determine the field", hint)
+    scale = 1.0
     if covariance is not None:
         root = _root(covariance, given.size)
+        # The unknowns behind the field are in its unit: tolerances are relative to the largest entry of all.
+        scale = float(np.linalg.norm(root) / np.sqrt(given.size))
+        root = root / scale
         pairs = (np.concatenate([one, np.linalg.solve(root, one)]) for one in (given, begin, own))
         given, begin, own = (np.asarray(one, dtype=np.float64) for one in pairs)
         own[: given.size // 2], own[given.size // 2 :] = 0.0, 1.0
@@ -341,7 +345,7 @@ def correct(
     u, residuals, lengths, multipliers, estimates = found
     return Corrected(
         u if covariance is None else u[: u.size // 2],
-        {name: values for name, values in multipliers if name != _LINK},
+        {name: values / scale**2 for name, values in multipliers if name != _LINK},
         np.array(residuals),
         np.array(lengths),
         {unknown: Estimate(*one) for unknown, one in zip(wanted, estimates, strict=True)},

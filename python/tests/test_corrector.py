@@ -155,6 +155,9 @@ def test_correlated_errors_are_weighted_by_the_inverse_of_their_covariance():
     diagonal = corrector.correct([0.0, 2.0], [parabola()], start=[1.0, 1.0], covariance=[[1.0, 0.0], [0.0, 0.25]])
     weighted = corrector.correct([0.0, 2.0], [parabola()], start=[1.0, 1.0], weights=[1.0, 4.0])
     assert diagonal.field == pytest.approx(weighted.field, abs=1e-7)
+    exact = corrector.correct([0.0, 2.0], [parabola()], start=[1.0, 1.0], covariance=[[1e-12, 0.0], [0.0, 0.25e-12]])
+    assert exact.field == pytest.approx(diagonal.field, abs=1e-7)
+    assert exact.multipliers["parabola"] == pytest.approx(1e12 * diagonal.multipliers["parabola"], rel=1e-5)
     for wrong, words in (([[1.0, 0.5], [0.0, 1.0]], "not symmetric"), ([[1.0, 2.0], [2.0, 1.0]], "positive definite"), ([1.0, 1.0], "covariance")):
         with pytest.raises(gb.InputError, match=words):
             corrector.correct([0.0, 2.0], [parabola()], covariance=wrong)
