@@ -11,6 +11,7 @@ use crate::corrector::{CorrectionMatrix, Factor, Projection, Solver};
 use crate::document::Section;
 use crate::error::Error;
 use crate::solve::{FactorFault, SparseRows};
+use crate::statistics::larger;
 
 #[derive(Clone, Copy)]
 struct Settings {
@@ -170,7 +171,7 @@ impl System {
         let mut factor = self.factor(Solver::Dense)?;
         let psi = factor.project(&self.values, &self.pull)?.multipliers;
         let size = largest(psi.iter().copied());
-        let mut worst = 0.0_f64;
+        let mut worst = 0.0;
         for (row, psi) in psi.iter().enumerate() {
             let mut minimum = |step: f64| -> Result<f64, FactorFault> {
                 let mut moved = self.values.clone();
@@ -183,7 +184,7 @@ impl System {
                 Ok(squares.sum())
             };
             let slope = (minimum(1e-4)? - minimum(-1e-4)?) / 2e-4;
-            worst = worst.max((slope + psi).abs() / size);
+            worst = larger(worst, (slope + psi).abs() / size);
         }
         Ok(worst)
     }
@@ -194,7 +195,8 @@ fn far(actual: &Projection, expected: &Projection) -> f64 {
     let far = |a: &[f64], b: &[f64]| {
         largest(a.iter().zip(b).map(|(a, b)| a - b)) / largest(b.iter().copied())
     };
-    far(&actual.step, &expected.step).max(far(&actual.multipliers, &expected.multipliers))
+    let multipliers = far(&actual.multipliers, &expected.multipliers);
+    larger(far(&actual.step, &expected.step), multipliers)
 }
 
 /// Y for unequal weights compared with its definition, computed with an explicit inverse: largest difference.

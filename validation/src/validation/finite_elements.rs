@@ -8,6 +8,7 @@ use crate::material::{HyperelasticLaw, NeoHooke};
 use crate::mesh::{Block, CellShape, Mesh, mesh_of_blocks};
 use crate::problem::{BoundaryProblem, Model, Support};
 use crate::solve::{NewtonSettings, State};
+use crate::statistics::larger;
 
 pub mod cantilever;
 pub mod cook;
@@ -63,11 +64,11 @@ fn solve(model: &Model, steps: usize) -> Result<State, Error> {
 
 /// Largest distance of a field from another one at the nodes of a mesh, over the largest size of the other.
 fn largest_error(mesh: &Mesh, actual: &[f64], exact: impl Fn([f64; 2]) -> [f64; 2]) -> f64 {
-    let (mut worst, mut largest) = (0.0_f64, 0.0_f64);
+    let (mut worst, mut largest) = (0.0, 0.0);
     for (position, u) in mesh.nodes.iter().zip(actual.chunks_exact(2)) {
         let exact = exact(*position);
-        worst = worst.max((u[0] - exact[0]).hypot(u[1] - exact[1]));
-        largest = largest.max(exact[0].hypot(exact[1]));
+        worst = larger(worst, (u[0] - exact[0]).hypot(u[1] - exact[1]));
+        largest = larger(largest, exact[0].hypot(exact[1]));
     }
     worst / largest
 }

@@ -12,6 +12,7 @@ use crate::material::Card;
 use crate::mesh::Mesh;
 use crate::problem::{ClampedPlate, Measures};
 use crate::solve::State;
+use crate::statistics::larger;
 
 /// Converged force in N and width at mid length in mm at the stretches, by Richardson's extrapolation of the same codes.
 const CONVERGED: &str = include_str!("../../plate/converged.csv");
@@ -78,7 +79,7 @@ fn compute(finest: usize, progress: Progress) -> Result<Outcome, Error> {
             let largest = worst.entry([row.code, element.clone()]).or_insert(0.0);
             for (computed, expected) in computed.into_iter().zip(row.values) {
                 let error = expected.map_or(0.0, |expected| (computed / expected - 1.0).abs());
-                *largest = largest.max(error);
+                *largest = larger(*largest, error);
             }
         }
     }
@@ -106,7 +107,7 @@ fn converged(material: &str, finest: usize, progress: Progress) -> Result<[Check
     let meshes = [finest / 4, finest / 2, finest].map(|along| Solved::new(material, along, "Q2"));
     let [coarse, middle, fine] = meshes;
     let meshes = [coarse?, middle?, fine?];
-    let (mut force, mut width) = (0.0_f64, 0.0_f64);
+    let (mut force, mut width) = (0.0, 0.0);
     let lines = CONVERGED.lines().skip(1);
     for line in lines.filter(|line| line.starts_with(&format!("{material},"))) {
         let numbers = line.split(',').skip(1).filter_map(|cell| cell.parse().ok());
@@ -119,8 +120,8 @@ fn converged(material: &str, finest: usize, progress: Progress) -> Result<[Check
             let actual = richardson(measures.each_ref().map(value)).extrapolated;
             (actual / expected - 1.0).abs()
         };
-        force = force.max(error(|actual| actual.force, numbers[1]));
-        width = width.max(error(|actual| actual.mid_width, numbers[2]));
+        force = larger(force, error(|actual| actual.force, numbers[1]));
+        width = larger(width, error(|actual| actual.mid_width, numbers[2]));
     }
     let check = |quantity: &str, error: f64| {
         let what = format!("{material}: converged {quantity}, largest relative difference");

@@ -7,6 +7,7 @@ use super::fields::Fields;
 use crate::corrector::plate::KnownConditions;
 use crate::error::Error;
 use crate::mass_spring::{MassSpring, Spring};
+use crate::statistics::larger;
 use crate::validation::case::{Block, Claim, Outcome, Progress, check, number, row, table};
 
 /// How wrong springs are: their cross-sections are changed by up to this share.
@@ -67,7 +68,7 @@ pub fn compare(
     outcome: &mut Outcome,
 ) -> Result<(), Error> {
     let mut rows = Vec::new();
-    let mut worst = 0.0_f64;
+    let mut worst = 0.0;
     for (name, variant) in Variant::ALL {
         progress.tell(name);
         let lattice = variant.lattice(fields, disturbance);
@@ -76,7 +77,7 @@ pub fn compare(
         let departures = fields.departures(&corrected);
         let last = departures.len() - 1;
         let end = &corrected.state.displacement;
-        worst = worst.max(fields.far(end));
+        worst = larger(worst, fields.far(end));
         let [before, first, second] = [0, 1, 2.min(last)].map(|step| departures[step]);
         let mut row = row(name, [before, first, second, fields.departure(end)]);
         row.push(last.to_string());
