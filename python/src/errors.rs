@@ -1,6 +1,7 @@
 //! The library's errors as Python's exceptions, which `gelbench._errors` defines.
 
 use gelbench::error::{Diagnostic, Error, Severity, SolveFault};
+use gelbench_base::error::suggestion;
 use pyo3::exceptions::{PyKeyboardInterrupt, PyRuntimeError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -92,13 +93,13 @@ pub fn refused(message: impl Into<String>) -> Error {
     Diagnostic::error("", message).into()
 }
 
-/// The choice of a name.
+/// The choice of a name; `what` is the argument.
 pub fn choice<T: Copy>(what: &str, name: &str, names: &[(&str, T)]) -> Result<T, Error> {
     let entry = names.iter().find(|(known, _)| *known == name);
     entry.map(|(_, choice)| *choice).ok_or_else(|| {
         let known: Vec<_> = names.iter().map(|(known, _)| *known).collect();
-        let hint = format!("use one of {}", known.join(", "));
-        input(format!("there is no {what} `{name}`"), hint)
+        let hint = suggestion(name, &known, "use one of");
+        input(format!("{what} `{name}` is not known"), hint)
     })
 }
 

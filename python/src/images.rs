@@ -11,7 +11,7 @@ use gelbench_studies::studies::images::{ImageRequest, ImageSettings, results};
 use numpy::{PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
-use crate::errors::input;
+use crate::errors::choice;
 use crate::markers::length_unit;
 use crate::results::Results;
 use crate::running::run;
@@ -66,19 +66,14 @@ impl ImageOptions {
     /// # Errors
     /// [`Error::Input`] where an image cannot be one.
     pub fn settings(self) -> Result<ImageSettings, Error> {
-        let mut orders = Order::NAMES.iter();
-        let order = orders.find(|(name, _)| *name == self.subset_shape);
-        let (_, order) = order.ok_or_else(|| {
-            let message = format!("subset_shape `{}` is not known", self.subset_shape);
-            input(message, "use affine or quadratic")
-        })?;
+        let order = choice("subset_shape", &self.subset_shape, &Order::NAMES)?;
         let numbered = self.frames.into_iter().enumerate();
         let frames = numbered.map(|(number, image)| image.file(&format!("images[{number}]")));
         Ok(ImageSettings {
             subsets: Settings {
                 spacing: self.spacing,
                 subset: self.subset,
-                order: *order,
+                order,
             },
             mask: match self.mask {
                 None => None,

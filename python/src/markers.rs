@@ -18,7 +18,7 @@ use gelbench_studies::studies::pictures::Pictures;
 use pyo3::prelude::*;
 use std::time::Instant;
 
-use crate::errors::{input, refused};
+use crate::errors::{choice, input, refused};
 use crate::images::ImageOptions;
 use crate::material::{MaterialCard, watched};
 use crate::results::{OfFrames, Results};
@@ -103,20 +103,15 @@ impl Options {
             (None, None) => MeshSource::Data,
         })
     }
-
-    fn shape(&self) -> Result<CellShape, Error> {
-        Ok(match &*self.cells {
-            "triangle3" => CellShape::Triangle3,
-            "triangle6" => CellShape::Triangle6,
-            "quadrilateral4" => CellShape::Quad4,
-            "quadrilateral9" => CellShape::Quad9,
-            other => {
-                let hint = "use triangle3, triangle6, quadrilateral4 or quadrilateral9";
-                return Err(input(format!("cells `{other}` are not known"), hint));
-            }
-        })
-    }
 }
+
+/// The kinds of cells.
+const CELLS: [(&str, CellShape); 4] = [
+    ("triangle3", CellShape::Triangle3),
+    ("triangle6", CellShape::Triangle6),
+    ("quadrilateral4", CellShape::Quad4),
+    ("quadrilateral9", CellShape::Quad9),
+];
 
 /// The length of a unit, or of a pixel, in mm.
 pub fn length_unit(text: &str) -> Result<f64, Error> {
@@ -133,15 +128,8 @@ pub fn length_unit(text: &str) -> Result<f64, Error> {
 
 /// Whether a choice is the first of two.
 fn either(what: &str, chosen: Option<&str>, [yes, no]: [&str; 2]) -> Result<Option<bool>, Error> {
-    match chosen {
-        None => Ok(None),
-        Some(name) if name == yes => Ok(Some(true)),
-        Some(name) if name == no => Ok(Some(false)),
-        Some(other) => Err(input(
-            format!("{what} `{other}` is not known"),
-            format!("use {yes} or {no}"),
-        )),
-    }
+    let names = [(yes, true), (no, false)];
+    chosen.map(|name| choice(what, name, &names)).transpose()
 }
 
 /// Corrects the field of some files: the results and the worst verdict.
@@ -171,7 +159,8 @@ pub fn correct(
         let regions = regions.into_iter();
         let regions = regions.map(|(name, card)| (name, watched(card, watch)));
         conditions.regions.extend(regions);
-        let (reading, mesh, shape) = (options.reading()?, options.mesh()?, options.shape()?);
+        let (reading, mesh) = (options.reading()?, options.mesh()?);
+        let shape = choice("cells", &options.cells, &CELLS)?;
         let request = Request {
             reading,
             images: options.images.settings()?,

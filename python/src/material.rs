@@ -10,7 +10,7 @@ use gelbench::material::registry::{CARDS, LAWS, Law};
 use gelbench::material::stability::stable_range;
 use gelbench::material::{Card, HyperelasticLaw};
 use gelbench::units::{self, Dimension};
-use gelbench_base::document::{EditedDocument, NewValue, name_of};
+use gelbench_base::document::{EditedDocument, NewValue};
 use gelbench_base::error::suggestion;
 use gelbench_mechanics::material::Known;
 use gelbench_mechanics::material::curve::simple_shear;
@@ -18,7 +18,7 @@ use gelbench_mechanics::material::parameters::{StrainMeasure, StressMeasure};
 use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::prelude::*;
 
-use crate::errors::{input, raised, refused};
+use crate::errors::{choice, input, raised, refused};
 use crate::law::Watched;
 use crate::running::{Watch, caught};
 
@@ -100,13 +100,21 @@ fn with_unit(value: &str, dimension: Dimension) -> String {
     format!("{value} {}", dimension.internal_unit())
 }
 
+/// The law of a name; a message names one of those that are `listed`.
+pub fn law_named(
+    name: &str,
+    listed: impl Iterator<Item = &'static Law>,
+) -> Result<&'static Law, Error> {
+    Law::named(name).ok_or_else(|| {
+        let names: Vec<_> = listed.map(|law| law.name).collect();
+        let hint = suggestion(name, &names, "laws are");
+        input(format!("there is no law `{name}`"), hint)
+    })
+}
+
 /// What is known of a material, by the keys of a card; plain numbers are in MPa where a unit is needed.
 fn known(law: &str, values: &BTreeMap<String, String>) -> Result<Known, Error> {
-    let law = Law::named(law).ok_or_else(|| {
-        let names: Vec<_> = LAWS.iter().map(|law| law.name).collect();
-        let hint = suggestion(law, &names, "laws are");
-        input(format!("there is no law `{law}`"), hint)
-    })?;
+    let law = law_named(law, LAWS.iter())?;
     let measures = (StressMeasure::Nominal, StrainMeasure::Nominal);
     let (_, entries) = law.with_values(&[], measures.0, measures.1);
     let mut known = Known::of(law);
@@ -271,15 +279,9 @@ impl MaterialCard {
 
 /// The test of a name; `None` for simple shear.
 fn mode(name: &str) -> Result<Option<Mode>, Error> {
-    if name == "shear" {
-        return Ok(None);
-    }
-    let entry = Mode::ALL.iter().find(|(known, _)| *known == name);
-    entry.map(|(_, mode)| Some(*mode)).ok_or_else(|| {
-        let known = Mode::ALL.map(|(_, mode)| name_of(&Mode::ALL, mode));
-        let hint = format!("use {} or shear", known.join(", "));
-        input(format!("there is no test `{name}`"), hint)
-    })
+    let [uniaxial, planar, equibiaxial] = Mode::ALL.map(|(name, mode)| (name, Some(mode)));
+    let tests = [uniaxial, planar, equibiaxial, ("shear", None)];
+    choice("test", name, &tests)
 }
 
 /// The names and titles of the cards that come along.

@@ -19,8 +19,8 @@ use gelbench_report::results::{
 };
 use pyo3::prelude::*;
 
-use crate::errors::{input, refused};
-use crate::material::MaterialCard;
+use crate::errors::{choice, input, refused};
+use crate::material::{MaterialCard, law_named};
 use crate::results::drawn;
 use crate::running::run;
 
@@ -64,14 +64,14 @@ pub fn fit(
         let tests_read = read.collect::<Result<Vec<_>, Error>>()?;
         refuse_repeated(&tests_read)?;
         let settings = FitSettings {
-            weighting: chosen("weighting", weighting, &Weighting::NAMES)?,
+            weighting: choice("weighting", weighting, &Weighting::NAMES)?,
             bounds,
             starts: starts.into(),
         };
         let fit = match law {
             Some(name) => {
                 watch.report(&name);
-                memory(history)?.fit(named(&name)?, &tests_read, &settings)?
+                memory(history)?.fit(law_named(&name, Law::fitted())?, &tests_read, &settings)?
             }
             None => {
                 watch.report("all laws");
@@ -107,25 +107,6 @@ fn memory(history: Option<&str>) -> Result<Memory, Error> {
     }
 }
 
-fn named(name: &str) -> Result<&'static Law, Error> {
-    Law::named(name).ok_or_else(|| {
-        let known: Vec<_> = Law::fitted().map(|law| law.name).collect();
-        input(
-            format!("there is no law `{name}`"),
-            suggestion(name, &known, "laws:"),
-        )
-    })
-}
-
-fn chosen<T: Copy>(what: &str, name: &str, names: &[(&'static str, T)]) -> Result<T, Error> {
-    let entry = names.iter().find(|(known, _)| *known == name);
-    entry.map(|(_, choice)| *choice).ok_or_else(|| {
-        let known: Vec<_> = names.iter().map(|(known, _)| *known).collect();
-        let hint = format!("it must be one of {}", known.join(", "));
-        input(format!("{what} `{name}` is not known"), hint)
-    })
-}
-
 /// Finds K(·) and D(·) in a recording by its name and table: JSON, text of the law, picture.
 #[pyfunction]
 #[pyo3(signature = (recording, said, forms, shapes, damping_over, progress=None))]
@@ -147,10 +128,10 @@ pub fn identify(
         let settings = IdentificationSettings {
             forms: [form(stiffness)?, form(damping)?],
             shapes: [
-                chosen("stiffness_shape", of_stiffness, &Shape::NAMES)?,
-                chosen("damping_shape", of_damping, &Shape::NAMES)?,
+                choice("stiffness_shape", of_stiffness, &Shape::NAMES)?,
+                choice("damping_shape", of_damping, &Shape::NAMES)?,
             ],
-            argument: chosen("damping_over", damping_over, &Argument::NAMES)?,
+            argument: choice("damping_over", damping_over, &Argument::NAMES)?,
         };
         let identification = identified(&read, settings, &|what| watch.report(what))?;
         let json = identification_json(&identification, &read, &name).to_string();
