@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 from . import _core
 from ._energy import Energy, card_of
 from ._errors import InputError, WriteError, fault
+from ._plots import inline, material_curves
 from ._quantities import Floats, PathLike, Quantity, array_of, text, texts, toml
 
 if TYPE_CHECKING:
@@ -366,8 +367,6 @@ class Material:
         -------
         matplotlib.axes.Axes
         """
-        from ._plots import material_curves
-
         return material_curves(self, ax, tests, stretch)
 
     def save(self, path: PathLike) -> None:
@@ -388,8 +387,6 @@ class Material:
         return f"<gelbench.Material {self.name}: {self.law}{f' ({numbers})' if numbers else ''}>"
 
     def _repr_html_(self) -> str:
-        from ._plots import inline
-
         rows = "".join(
             f"<tr><td>{html.escape(key)}</td><td>{own.value:g} {html.escape(own.unit.strip('–'))}</td></tr>"
             for key, own in self.parameters.items()

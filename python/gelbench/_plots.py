@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ._errors import fault
 from ._fields import Cells
 from ._quantities import Floats
 
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
     from ._solution import Solution, State
     from ._sweep_table import Band
 
-__all__ = ["deformed", "forces", "inline", "material_curves"]
+__all__ = ["deformed", "forces", "image", "inline", "material_curves"]
 
 CORNERS = {
     "triangle": [(0, 1, 2)],
@@ -42,6 +43,11 @@ def axes(ax: Axes | None) -> Axes:
     return found
 
 
+def image(png: bytes) -> str:
+    """A picture in a notebook."""
+    return f'<img style="max-width:100%" src="data:image/png;base64,{base64.b64encode(png).decode()}">'
+
+
 def inline(draw: Callable[[Axes], object]) -> str:
     """A picture for a notebook, if matplotlib is installed."""
     try:
@@ -54,7 +60,7 @@ def inline(draw: Callable[[Axes], object]) -> str:
     draw(figure.subplots())
     file = io.BytesIO()
     figure.savefig(file, format="png", dpi=110)
-    return f'<img src="data:image/png;base64,{base64.b64encode(file.getvalue()).decode()}">'
+    return image(file.getvalue())
 
 
 def triangles(cells: Cells) -> Any:
@@ -92,8 +98,6 @@ def _limits(places: Floats, values: Floats) -> tuple[float, float, str]:
 
 def deformed(state: State, quantity: str, component: int, ax: Axes | None, options: dict[str, Any]) -> Axes:
     """The deformed sheet, coloured by an array at its nodes."""
-    from ._errors import fault
-
     data = state.point_data
     if quantity not in data:
         raise fault("quantity", f"there is no array `{quantity}`", f"arrays are {', '.join(data)}")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import base64
 import html
 import io
 import json
@@ -15,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 from . import _core
 from ._fields import Cells, cells_of, to_meshio, to_pyvista
 from ._kept import save_values, values_of
+from ._plots import image
 from ._quantities import Floats, PathLike
 
 if TYPE_CHECKING:
@@ -196,11 +196,7 @@ class Results:
         return f"{self.title}: {verdict}\n\n{self.summary}".rstrip()
 
     def _repr_html_(self) -> str:
-        pictures = list(self.pictures.values())[:2]
-        drawn = "".join(
-            f'<img style="max-width:100%" src="data:image/png;base64,{base64.b64encode(one).decode()}">'
-            for one in pictures
-        )
+        drawn = "".join(image(one) for one in list(self.pictures.values())[:2])
         told = "".join(f"<p>{html.escape(warning)}</p>" for warning in [*self.doubts, *self.warnings])
         return f"<h3>{html.escape(self.title)}</h3><pre>{html.escape(self.summary)}</pre>{told}{drawn}"
 

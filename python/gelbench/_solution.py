@@ -5,6 +5,7 @@ from __future__ import annotations
 import html
 import os
 from collections.abc import Sequence
+from operator import attrgetter
 from typing import TYPE_CHECKING, Any, NamedTuple, overload
 
 import numpy as np
@@ -14,6 +15,7 @@ from . import _core
 from ._errors import WriteError, fault
 from ._kept import save_values, values_of
 from ._fields import Cells, cells_of, to_meshio, to_pyvista
+from ._plots import deformed, forces, inline
 from ._quantities import Floats, PathLike, array_of, finite, floats
 
 if TYPE_CHECKING:
@@ -184,8 +186,6 @@ class State:
         -------
         matplotlib.axes.Axes
         """
-        from ._plots import deformed
-
         return deformed(self, quantity, component, ax, options)
 
     def _data(self) -> tuple[dict[str, Floats], dict[str, Floats]]:
@@ -202,10 +202,12 @@ class State:
         return f"<gelbench.State at {self.factor:g}: {self.force:.6g} N>"
 
     def _repr_html_(self) -> str:
-        from ._plots import inline
-
         head = f"{html.escape(self._solution.model)} at {self.factor:g}: {self.force:.6g} N"
         return f"{head}<br>{inline(lambda ax: self.plot(ax=ax))}"
+
+
+def _of_last(name: str) -> Any:
+    return property(attrgetter(f"last.{name}"), doc=f"`State.{name}` of the last state.")
 
 
 class Solution(Sequence[State]):
@@ -296,65 +298,18 @@ class Solution(Sequence[State]):
             raise IndexError("the solution has no state: no load factor was reached")
         return self._states[-1]
 
-    @property
-    def displacement(self) -> Floats:
-        """`State.displacement` of the last state."""
-        return self.last.displacement
-
-    @property
-    def residual(self) -> Floats:
-        """`State.residual` of the last state."""
-        return self.last.residual
-
-    @property
-    def residuals(self) -> Floats:
-        """`State.residuals` of the last state."""
-        return self.last.residuals
-
-    @property
-    def groups(self) -> dict[str, GroupForce]:
-        """`State.groups` of the last state."""
-        return self.last.groups
-
-    @property
-    def energy(self) -> float:
-        """`State.energy` of the last state."""
-        return self.last.energy
-
-    @property
-    def balance(self) -> float:
-        """`State.balance` of the last state."""
-        return self.last.balance
-
-    @property
-    def multipliers(self) -> dict[str, Floats]:
-        """`State.multipliers` of the last state."""
-        return self.last.multipliers
-
-    @property
-    def point_data(self) -> dict[str, Floats]:
-        """`State.point_data` of the last state."""
-        return self.last.point_data
-
-    @property
-    def cell_data(self) -> dict[str, Floats]:
-        """`State.cell_data` of the last state."""
-        return self.last.cell_data
-
-    @property
-    def force(self) -> float:
-        """`State.force` of the last state."""
-        return self.last.force
-
-    @property
-    def stress(self) -> Floats:
-        """`State.stress` of the last state."""
-        return self.last.stress
-
-    @property
-    def error(self) -> dict[str, float]:
-        """`State.error` of the last state."""
-        return self.last.error
+    displacement: Floats = _of_last("displacement")
+    residual: Floats = _of_last("residual")
+    residuals: Floats = _of_last("residuals")
+    groups: dict[str, GroupForce] = _of_last("groups")
+    energy: float = _of_last("energy")
+    balance: float = _of_last("balance")
+    multipliers: dict[str, Floats] = _of_last("multipliers")
+    point_data: dict[str, Floats] = _of_last("point_data")
+    cell_data: dict[str, Floats] = _of_last("cell_data")
+    force: float = _of_last("force")
+    stress: Floats = _of_last("stress")
+    error: dict[str, float] = _of_last("error")
 
     def at(self, points: ArrayLike) -> AtPoints:
         """`State.at` of the last state."""
@@ -376,8 +331,6 @@ class Solution(Sequence[State]):
 
     def plot_forces(self, ax: Axes | None = None) -> Axes:
         """Draws the force over the load factor."""
-        from ._plots import forces
-
         return forces(self, ax)
 
     def __len__(self) -> int:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import base64
 import json
 import os
 from collections.abc import Mapping, Sequence
@@ -16,6 +15,7 @@ from numpy.typing import ArrayLike
 from . import _core
 from ._errors import InputError, fault
 from ._material import Material
+from ._plots import image
 from ._progress import Progress, callback
 from ._quantities import Floats, PathLike, Quantity, SupportsUnits, array_of, floats, number, text, whole
 
@@ -161,17 +161,13 @@ class Fit:
             f"<tr><td>{key} [{own.unit}]</td><td>{cell(own)}</td></tr>" for key, own in self.parameters.items()
         )
         head = "<tr><th></th><th>value</th><th>95 % interval</th></tr>"
-        return f"<b>{self.law}</b>: {self.verdict}<table>{head}{rows}</table>{_image(self._picture)}"
+        return f"<b>{self.law}</b>: {self.verdict}<table>{head}{rows}</table>{image(self._picture)}"
 
 
 def _pair(values: Sequence[float | None] | None) -> tuple[float, float] | None:
     if values is None or values[0] is None or values[1] is None:
         return None
     return (float(values[0]), float(values[1]))
-
-
-def _image(png: bytes) -> str:
-    return f'<img style="max-width:100%" src="data:image/png;base64,{base64.b64encode(png).decode()}">'
 
 
 def fit(
@@ -417,7 +413,7 @@ class Identification:
         return f"<gelbench.Identification: misfit {self.misfit:.3g}>"
 
     def _repr_html_(self) -> str:
-        return f"<p>misfit {self.misfit:.3g}</p>{_image(self._picture)}"
+        return f"<p>misfit {self.misfit:.3g}</p>{image(self._picture)}"
 
 
 def identify(
