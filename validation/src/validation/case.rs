@@ -5,6 +5,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_distr::{Distribution, StandardNormal};
 
 use crate::document::Section;
+use crate::error::{Error, SolveFault};
 use crate::mesh::Mesh;
 use crate::results::Wanted;
 use crate::results::{Line, Stroke, mesh_outlines};
@@ -25,6 +26,16 @@ pub fn section<'a, T>(
     let settings = read(&section);
     section.unknown_keys();
     settings
+}
+
+/// The error of a model at a step, of the fault that ended it.
+pub fn failed<F: Into<SolveFault>>(model: &str, step: &str) -> impl FnOnce(F) -> Error {
+    let (model, step) = (model.to_owned(), step.to_owned());
+    move |fault| Error::Solve {
+        model,
+        step,
+        fault: fault.into(),
+    }
 }
 
 /// A computed quantity, about to be judged.

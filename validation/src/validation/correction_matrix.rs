@@ -6,10 +6,9 @@ use nalgebra::{DMatrix, DVector};
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
-use super::case::{Check, Computation, Outcome, check, largest, section};
+use super::case::{Check, Computation, Outcome, check, failed, largest, section};
 use crate::corrector::{CorrectionMatrix, Factor, Projection, Solver};
 use crate::document::Section;
-use crate::error::Error;
 use crate::solve::{FactorFault, SparseRows};
 use crate::statistics::larger;
 
@@ -37,13 +36,7 @@ pub fn prepare(root: &Section, _folder: &Path) -> Computation {
         }
         settings
     });
-    Box::new(move |_| {
-        compute(settings).map_err(|fault| Error::Solve {
-            model: "corrector".into(),
-            step: "a random system".into(),
-            fault: fault.into(),
-        })
-    })
+    Box::new(move |_| compute(settings).map_err(failed("corrector", "a random system")))
 }
 
 /// Numbers in −1…1, about a third of them zero.

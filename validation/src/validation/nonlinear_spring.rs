@@ -6,8 +6,8 @@
 use std::path::Path;
 
 use super::case::{
-    Block, Check, Claim, Computation, Figure, Outcome, check, largest, line, number, percent, row,
-    section, table,
+    Block, Check, Claim, Computation, Figure, Outcome, check, failed, largest, line, number,
+    percent, row, section, table,
 };
 use crate::corrector::{Corrector, CorrectorSettings, Function, Linearisation, Solver};
 use crate::document::{Bound, Section};
@@ -45,11 +45,7 @@ fn compute(spring: &Spring) -> Result<Outcome, Error> {
     let secant = exact[exact.len() - 1] / forces[forces.len() - 1];
     let trial: Vec<f64> = forces.iter().map(|f| f * secant).collect();
     let corrected = corrector(spring).correct(&trial, &trial);
-    let correction = corrected.map_err(|fault| Error::Solve {
-        model: "corrector".into(),
-        step: "the parabolic spring".into(),
-        fault,
-    })?;
+    let correction = corrected.map_err(failed("corrector", "the parabolic spring"))?;
     let steps = correction.steps.iter();
     let iterates: Vec<&[f64]> = steps.map(|step| &step.field[..]).collect();
     let deviations = iterates.iter().map(|field| percent(field, &exact));

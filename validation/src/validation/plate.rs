@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use super::case::failed;
 use crate::corrector::plate::{CorrectedState, KnownConditions};
 use crate::corrector::{CorrectorSettings, DifferenceScheme, PlateCorrector, Solver};
 use crate::document::{Bound, Section};
@@ -124,10 +125,6 @@ impl Plate {
 
     /// A failed correction as an error.
     pub fn fault(&self, fault: SolveFault) -> Error {
-        Error::Solve {
-            model: "corrector".into(),
-            step: ClampedPlate::describe_step(self.stretch()),
-            fault,
-        }
+        failed("corrector", &ClampedPlate::describe_step(self.stretch()))(fault)
     }
 }

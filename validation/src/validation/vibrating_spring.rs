@@ -8,14 +8,14 @@ use std::path::Path;
 use rayon::prelude::*;
 
 use super::case::{
-    Check, Claim, Computation, Figure, Outcome, Progress, Spread, check, line, mean,
+    Check, Claim, Computation, Figure, Outcome, Progress, Spread, check, failed, line, mean,
     normal_numbers, number, percent, removed_percent, row, section, share, table,
 };
 use super::oscillator::{Differences, Motion, Regression};
 use super::plate::CORRECTOR;
 use crate::corrector::Corrector;
 use crate::document::{Bound, Section};
-use crate::error::{Error, SolveFault};
+use crate::error::SolveFault;
 use crate::results::{LineChart, Stroke};
 use crate::solve::vector::{difference, dot};
 use crate::statistics::Estimate;
@@ -50,11 +50,7 @@ pub fn prepare(root: &Section, _folder: &Path) -> Computation {
         order,
     });
     Box::new(move |progress| {
-        compute(&settings, progress).map_err(|fault| Error::Solve {
-            model: "corrector".into(),
-            step: "the vibrating spring".into(),
-            fault,
-        })
+        compute(&settings, progress).map_err(failed("corrector", "the vibrating spring"))
     })
 }
 

@@ -16,7 +16,7 @@ use crate::problem::{BoundaryProblem, Support};
 use crate::results::{Axis, Line, LineChart, PALETTE, Stroke};
 use crate::solve::State;
 use crate::validation::case::{
-    Check, Computation, Figure, Outcome, Progress, Squares, check, line, section,
+    Check, Computation, Figure, Outcome, Progress, Squares, check, failed, line, section,
 };
 
 /// For messages.
@@ -226,11 +226,9 @@ impl Pull {
         model.add_forces(&forces(&mesh, &problem, field));
         let state = solve(&model, 1)?;
         let mut influences = model.influences(std::slice::from_ref(&state), "right", 0);
-        let influence = influences.remove(0).map_err(|fault| Error::Solve {
-            model: NAME.to_owned(),
-            step: "load factor 1".to_owned(),
-            fault,
-        })?;
+        let influence = influences
+            .remove(0)
+            .map_err(failed(NAME, "load factor 1"))?;
         let computed = model.reaction(&state, "right")[0];
         drop(model);
         Ok(Self {

@@ -14,7 +14,7 @@ use crate::material::viscosity::ViscousMaterial;
 use crate::mesh::{Mesh, Side};
 use crate::problem::Model;
 use crate::problem::sheet_energy::SheetEnergy;
-use crate::validation::case;
+use crate::validation::case::{self, failed};
 use crate::validation::plate::{NEWTON, Plate};
 
 /// A displacement field for each instant.
@@ -38,11 +38,7 @@ pub fn check_even(section: &Section, cells: [usize; 2]) {
 
 /// A fault of a motion.
 pub fn fault(fault: SolveFault) -> Error {
-    Error::Solve {
-        model: "motion".into(),
-        step: "the released plate".into(),
-        fault,
-    }
+    failed("motion", "the released plate")(fault)
 }
 
 /// The three models, whose bodies borrow from them.

@@ -9,6 +9,7 @@ use crate::error::{Error, SolveFault};
 use crate::material::{HyperelasticLaw, NeoHooke};
 use crate::mesh::Mesh;
 use crate::problem::{ClampedPlate, Model};
+use crate::validation::case::failed;
 
 pub const SIZE: [f64; 2] = [150.0, 50.0];
 pub const THICKNESS: f64 = 2.0;
@@ -36,11 +37,7 @@ pub fn problem(stretches: Vec<f64>) -> ClampedPlate {
 }
 
 pub fn fault(step: &str, fault: SolveFault) -> Error {
-    Error::Solve {
-        model: "motion".into(),
-        step: step.to_owned(),
-        fault,
-    }
+    failed("motion", step)(fault)
 }
 
 /// A motion of a model without loads, clamped on the left.

@@ -6,7 +6,7 @@ use crate::finite_element::error_estimate::ErrorEstimate;
 use crate::finite_element::recovery::Recovery;
 use crate::finite_element::{Element, FiniteElements};
 use crate::problem::{ClampedPlate, Measures};
-use crate::validation::case::{Block, Check, Outcome, Progress, check, number, table};
+use crate::validation::case::{Block, Check, Outcome, Progress, check, failed, number, table};
 use crate::validation::finite_elements::{NEWTON, sheet};
 
 pub const SIZE: [f64; 2] = [150.0, 50.0];
@@ -113,11 +113,10 @@ impl Plate {
         let mut estimates = model.estimates(&problem, std::slice::from_ref(&state), &recovery);
         Ok(Self {
             describe: model.describe(),
-            estimate: estimates.remove(0).map_err(|fault| Error::Solve {
-                model: model.describe(),
-                step: ClampedPlate::describe_step(STRETCH),
-                fault,
-            })?,
+            estimate: estimates.remove(0).map_err(failed(
+                &model.describe(),
+                &ClampedPlate::describe_step(STRETCH),
+            ))?,
             measures: Measures::of(&model.mesh, &state),
         })
     }
