@@ -127,13 +127,14 @@ impl Subject {
 
     fn fit(&self, noise: f64, kind: Kind, seed: u64) -> Result<Fit, Error> {
         let (nominal, strain) = (StressMeasure::Nominal, StrainMeasure::Nominal);
-        let (law, _) = named(self.law)?.with_values(self.values, nominal, strain);
+        let named = |name: &str| Law::named(name).expect("laws of gelbench");
+        let (law, _) = named(self.law).with_values(self.values, nominal, strain);
         let tests = self.pulls.iter().enumerate().map(|(stream, pull)| {
             let drawn = correlated(kind.correlation, seed, stream as u64);
             self.test(&*law, *pull, kind.points, drawn.map(|z| noise * z))
         });
         let tests: Vec<TestData> = tests.collect::<Result<_, _>>()?;
-        fit(named(self.fitted)?, &tests, &FitSettings::default())
+        fit(named(self.fitted), &tests, &FitSettings::default())
     }
 
     /// The data of a test as a file holds them.
@@ -170,16 +171,6 @@ impl Subject {
             held: truths.map(held).collect(),
         }
     }
-}
-
-fn named(name: &str) -> Result<&'static Law, Error> {
-    let none = || {
-        Error::input(
-            format!("there is no law `{name}`"),
-            "name one that there is",
-        )
-    };
-    Law::named(name).ok_or_else(none)
 }
 
 /// Noise of variance one whose neighbours correlate by so much.
