@@ -186,7 +186,7 @@ fn two_photographs_and_an_edge_lead_to_force_and_stress() {
     }
     bench.get_by_label("correct").click();
     bench.step();
-    until(&mut bench, |bench| !bench.fields.is_busy());
+    until(&mut bench, |bench| !bench.fields.corrector.is_busy());
     bench.step();
     let answer = state(&bench).fields.answer().unwrap().as_ref();
     let answer = answer.unwrap();
@@ -232,7 +232,7 @@ fn the_edge_may_be_drawn_on_the_first_photograph() {
     }
     bench.get_by_label("use this edge").click();
     bench.step();
-    until(&mut bench, |bench| !bench.fields.is_busy());
+    until(&mut bench, |bench| !bench.fields.corrector.is_busy());
     bench.step();
     let answer = state(&bench).fields.answer().unwrap().as_ref().unwrap();
     let Drawing::Mesh(figure) = &answer.preview.drawing else {

@@ -304,9 +304,9 @@ impl Workbench {
             self.table.act(Action::Hold);
         }
         self.exports.stop();
-        self.materials.stop();
-        self.fields.stop();
-        self.studies.stop();
+        self.materials.fitter.stop();
+        self.fields.corrector.stop();
+        self.studies.runner.stop();
         self.table.forget_tasks();
         if busy && !moved {
             self.message = "stopped; the next change starts a new computation".to_owned();
@@ -319,9 +319,9 @@ impl Workbench {
         sheets
             || moving
             || self.exports.is_busy()
-            || self.materials.is_busy()
-            || self.fields.is_busy()
-            || self.studies.is_busy()
+            || self.materials.fitter.is_busy()
+            || self.fields.corrector.is_busy()
+            || self.studies.runner.is_busy()
     }
 }
 

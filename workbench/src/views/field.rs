@@ -37,7 +37,8 @@ const EXAMPLE: &[u8] = include_bytes!("../../../examples/measured_plate.csv");
 pub struct Fields {
     /// The files, and what is stated about them.
     pub question: FieldQuestion,
-    corrector: Background<FieldCorrector>,
+    /// Who corrects it.
+    pub corrector: Background<FieldCorrector>,
     answer: Option<Result<FieldAnswer, Fault>>,
     frame: usize,
     field: usize,
@@ -164,16 +165,6 @@ impl Fields {
             self.photographs = Photographs::default();
             self.frame = usize::MAX;
         }
-    }
-
-    /// Whether something is being computed.
-    pub fn is_busy(&self) -> bool {
-        self.corrector.is_busy()
-    }
-
-    /// Stops it.
-    pub fn stop(&mut self) {
-        self.corrector.stop();
     }
 
     /// What was found.

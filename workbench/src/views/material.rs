@@ -21,7 +21,8 @@ use crate::logic::table::Table;
 /// The state of the view.
 pub struct Materials {
     question: FitQuestion,
-    fitter: Background<Fitter>,
+    /// Who fits.
+    pub fitter: Background<Fitter>,
     ranking: Option<Result<Ranking, Fault>>,
     chosen: usize,
     /// The points of the tests, as they were read last.
@@ -75,16 +76,6 @@ impl Materials {
         self.seen = answer.as_ref().ok().map(|answer| answer.measured.clone());
         self.ranking = answer.map(|answer| answer.ranking).transpose();
         self.chosen = 0;
-    }
-
-    /// Whether something is being fitted.
-    pub fn is_busy(&self) -> bool {
-        self.fitter.is_busy()
-    }
-
-    /// Stops fitting.
-    pub fn stop(&mut self) {
-        self.fitter.stop();
     }
 
     /// Fits the tests that are there.

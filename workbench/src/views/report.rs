@@ -8,7 +8,7 @@ use eframe::egui::{
 };
 
 use gelbench::results::{Block, Drawing};
-use gelbench_report::results::{FieldFigure, MeshFigure, PALETTE, Panel, Scale, Values};
+use gelbench_report::results::{MeshFigure, PALETTE, Panel, Scale, Values};
 
 use super::chart;
 use super::colour_bar::colour_bar;
@@ -114,7 +114,10 @@ pub fn picture(ui: &mut Ui, name: &str, drawing: &Drawing) {
                 chart::show(ui, &format!("{name} {number}"), chart, height);
             }
         }
-        Drawing::Field(figure) => field(ui, figure),
+        Drawing::Field(figure) => {
+            ui.label(RichText::new(&figure.title).small().strong());
+            panels(ui, &figure.quantity, figure.scale, &figure.panels);
+        }
         Drawing::Animation(moving) => {
             let Some(frame) = moving.frames.last() else {
                 return;
@@ -122,13 +125,11 @@ pub fn picture(ui: &mut Ui, name: &str, drawing: &Drawing) {
             ui.label(format!("{}, at {} s", moving.title, frame.time));
             panels(ui, &moving.quantity, Scale::Linear, &frame.panels);
         }
-        Drawing::Mesh(figure) => mesh(ui, figure),
+        Drawing::Mesh(figure) => {
+            let room = room(ui, figure.cells.iter().flatten());
+            mesh_in(ui, room, figure);
+        }
     }
-}
-
-fn field(ui: &mut Ui, figure: &FieldFigure) {
-    ui.label(RichText::new(&figure.title).small().strong());
-    panels(ui, &figure.quantity, figure.scale, &figure.panels);
 }
 
 /// Fields one below the other on one colour scale.
@@ -210,13 +211,7 @@ pub fn edge_colour(figure: &MeshFigure, name: &str) -> Color32 {
     Color32::from_rgb(r, g, b)
 }
 
-/// A mesh and its edges, each in a colour.
-pub fn mesh(ui: &mut Ui, figure: &MeshFigure) {
-    let room = room(ui, figure.cells.iter().flatten());
-    mesh_in(ui, room, figure);
-}
-
-/// Draws a mesh and its edges in a room that has been allocated for them.
+/// Draws a mesh and its edges, each in a colour, in a room that has been allocated for them.
 pub fn mesh_in(ui: &Ui, (view, area): (View, Rect), figure: &MeshFigure) {
     let painter = ui.painter().with_clip_rect(area.expand(8.0));
     let faint = Stroke::new(0.5, ui.visuals().text_color().gamma_multiply(0.4));

@@ -21,7 +21,8 @@ pub struct Studies {
     pub text: String,
     /// The files that the study may name.
     pub files: Vec<NamedFile>,
-    runner: Background<Runner>,
+    /// Who runs it.
+    pub runner: Background<Runner>,
     report: Option<Result<Report, Fault>>,
     /// Whether the report has just come, and is scrolled to.
     arrived: bool,
@@ -70,16 +71,6 @@ impl Studies {
             (self.arrived, self.unfolds) = (answer.is_ok(), Some(answer.is_err()));
             self.report = Some(answer);
         }
-    }
-
-    /// Whether something is being computed.
-    pub fn is_busy(&self) -> bool {
-        self.runner.is_busy()
-    }
-
-    /// Stops it.
-    pub fn stop(&mut self) {
-        self.runner.stop();
     }
 
     /// What was found.
