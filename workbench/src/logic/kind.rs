@@ -72,7 +72,8 @@ impl Kind {
         }
     }
 
-    /// A table that is read as markers is a field; one that states what was tested, or has two columns, is a test.
+    /// A table that says what was tested, or has fewer than four columns, is a test; any other that is read as markers is a field, which may
+    /// state its thickness and the like too.
     fn of_table(name: &str, text: &str) -> Self {
         let first = text
             .lines()
@@ -82,16 +83,13 @@ impl Kind {
             return Self::Edge;
         }
         let columns = first.split([',', ';', '\t']).count();
-        let states = |key: &&str| {
-            text.lines().any(|line| {
-                line.trim_start_matches('#')
-                    .trim_start()
-                    .starts_with(&format!("{key}:"))
-            })
-        };
-        let is_test = KEYS.iter().any(states) || columns < 4;
-        let path = PathBuf::from(name);
         let text = beginning(text);
+        let states = |key: &str| {
+            let statement = format!("{key}:");
+            let mut lines = text.lines().map(|line| line.trim_start_matches('#'));
+            lines.any(|line| line.trim_start().starts_with(&statement))
+        };
+        let path = PathBuf::from(name);
         let as_field = || {
             let files = [(path.clone(), text.as_bytes().to_vec())];
             with_files(files, || {
@@ -99,7 +97,8 @@ impl Kind {
             })
         };
         let as_test = || TestData::parse(name, text, &Statements::new()).is_ok();
-        if is_test || (!as_field() && as_test()) {
+        let stated_or_read = || KEYS.iter().any(|key| states(key)) || as_test();
+        if columns < 4 || states("test") || (!as_field() && stated_or_read()) {
             Self::Test
         } else {
             Self::Field
@@ -131,11 +130,14 @@ mod tests {
     #[test]
     fn files_find_their_view() {
         let field = include_str!("../../../examples/measured_plate.csv");
+        let stated = format!("# thickness: 2 mm\n{field}");
         let test = include_str!("../../../materials/data/treloar_1944_uniaxial.csv");
         let motion = include_str!("../../../examples/released_plate.toml");
         let card = include_str!("../../../materials/neo-hooke.toml");
         for (name, text, kind) in [
             ("measured.csv", field, Kind::Field),
+            ("stated.csv", stated.as_str(), Kind::Field),
+            ("pull.csv", "# area: 8 mm^2\na,b,c,d\n1,2,3,4\n", Kind::Test),
             ("test.csv", test, Kind::Test),
             ("bare.csv", "strain,stress\n0.1,0.2\n", Kind::Test),
             ("edge.csv", "x [mm],y [mm],line\n0,0,1\n", Kind::Edge),
