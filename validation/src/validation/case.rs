@@ -160,7 +160,8 @@ pub fn share(holds: impl IntoIterator<Item = bool>) -> f64 {
     100.0 * mean(holds.into_iter().map(|holds| f64::from(u8::from(holds))))
 }
 
-/// Least, median and largest value; of an even number of values the upper one of the two in the middle.
+/// Least, median and largest value, of which ends are NaN where a value is none; of an even number of values the upper one of the two in the
+/// middle.
 #[derive(Clone, Copy, Debug)]
 pub struct Spread {
     /// The least value.
@@ -176,7 +177,10 @@ impl Spread {
     pub fn of(values: impl IntoIterator<Item = f64>) -> Self {
         let values: Vec<f64> = values.into_iter().collect();
         Self {
-            least: values.iter().copied().fold(f64::INFINITY, f64::min),
+            least: -values
+                .iter()
+                .map(|value| -value)
+                .fold(f64::NEG_INFINITY, larger),
             most: values.iter().copied().fold(f64::NEG_INFINITY, larger),
             median: median(values),
         }

@@ -86,8 +86,8 @@ struct Plate {
 struct StretchResult {
     law: &'static str,
     climbed: Result<ClimbSolution, Error>,
-    /// Distance to the direct method's field over the discretisation error; not a number where one of them is missing.
-    share: f64,
+    /// Distance to the direct method's field over the discretisation error, where there are both.
+    share: Option<f64>,
     /// Whether the direct method has a field.
     direct: bool,
     /// The plate and the stretch, for messages.
@@ -104,8 +104,8 @@ impl Plate {
             let climbed = climb.correct(*stretch);
             let direct: Option<&State> = direct.get(step);
             let share = match (&climbed, direct) {
-                (Ok(climbed), Some(direct)) => share(climbed, &direct.displacement),
-                _ => f64::NAN,
+                (Ok(climbed), Some(direct)) => Some(share(climbed, &direct.displacement)),
+                _ => None,
             };
             StretchResult {
                 law: self.law,
@@ -171,9 +171,7 @@ fn outcome(result: &[StretchResult]) -> Outcome {
 
 /// The largest share, one that is not a number where no field can be compared.
 fn worst_share<'a>(result: impl Iterator<Item = &'a StretchResult>) -> f64 {
-    let shares = result
-        .map(|result| result.share)
-        .filter(|share| !share.is_nan());
+    let shares = result.filter_map(|result| result.share);
     shares.reduce(larger).unwrap_or(f64::NAN)
 }
 
