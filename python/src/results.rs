@@ -43,16 +43,11 @@ pub struct OfFrames {
 
 impl OfFrames {
     fn write(&self, files: &mut ResultFolder) -> Result<(), Error> {
-        for GridSeries { name, grids } in &self.series {
-            for one in grids {
-                let file = format!("vtk/{}.vtu", one.name);
-                files.add(&file, &vtk::grid(&one.grid))?;
-            }
-            let played = grids
-                .iter()
-                .filter_map(|one| Some((one.time?, one.name.clone())));
-            let collection = vtk::collection(&played.collect::<Vec<_>>());
-            files.add(&format!("vtk/{name}.pvd"), &collection)?;
+        for series in &self.series {
+            output::write_grids(files, series)?;
+        }
+        if !self.series.is_empty() {
+            files.add("vtk/view.py", vtk::VIEW.as_bytes())?;
         }
         let mut tables = self.tables.iter();
         tables.try_for_each(|(name, table)| files.add(name, table.as_bytes()))

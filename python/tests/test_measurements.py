@@ -85,7 +85,7 @@ def test_measured_markers_are_corrected_as_by_the_command(command, root, tmp_pat
     assert own == theirs
     corrected.write(tmp_path / "own")
     for path in (tmp_path / "out").rglob("*"):
-        if path.suffix in (".vtu", ".csv", ".pvd"):
+        if path.suffix in (".vtu", ".csv", ".pvd", ".py"):
             assert (tmp_path / "own" / path.relative_to(tmp_path / "out")).read_bytes() == path.read_bytes(), path
 
 
