@@ -2,8 +2,10 @@
 
 use std::cell::RefCell;
 use std::fs;
+use std::future::poll_fn;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
+use std::task::Poll;
 
 use eframe::egui::{Key, Modifiers, ViewportCommand, ViewportEvent, ViewportId};
 use egui_kittest::kittest::Queryable;
@@ -116,6 +118,29 @@ fn a_sheet_is_saved_where_a_dialogue_says_and_from_then_on_without_one() {
     );
     press(&mut bench, Modifiers::COMMAND | Modifiers::SHIFT, Key::S);
     assert_eq!(asked.borrow().len(), 2, "`save as …` asks anew");
+}
+
+#[test]
+fn what_changes_while_a_dialogue_is_open_is_not_taken_for_saved() {
+    let folder = Folder::new("meanwhile");
+    let mut bench = window([1200.0, 800.0], small());
+    let answer: Rc<RefCell<Option<PathBuf>>> = Rc::default();
+    let awaited = Rc::clone(&answer);
+    state_mut(&mut bench).choose_by(Box::new(move |_, _| {
+        let awaited = Rc::clone(&awaited);
+        Box::pin(poll_fn(move |_| match awaited.take() {
+            Some(path) => Poll::Ready(Some(path)),
+            None => Poll::Pending,
+        }))
+    }));
+    pull(&mut bench, 60.0);
+    let asked_for = state(&bench).table.scene().study();
+    press(&mut bench, Modifiers::COMMAND, Key::S);
+    pull(&mut bench, 61.0);
+    *answer.borrow_mut() = Some(folder.at("mine.toml"));
+    bench.run_steps(2);
+    assert_eq!(folder.text("mine.toml"), asked_for);
+    assert!(state(&bench).is_changed(Tab::Sheet));
 }
 
 #[test]

@@ -33,8 +33,10 @@ pub enum Event {
     Chosen(PathBuf),
     /// Files were written.
     Saved {
-        /// The view whose document they are, and its path; a download has none.
-        document: Option<(Tab, Option<PathBuf>)>,
+        /// What was written, perhaps long after it was given.
+        outgoing: Outgoing,
+        /// The path of the first file; a download has none.
+        path: Option<PathBuf>,
         /// A sentence that says where they are.
         message: String,
     },

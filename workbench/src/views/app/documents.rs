@@ -182,10 +182,14 @@ impl Workbench {
                     self.message = message;
                     self.leaving = self.leaving.take().filter(|leaving| !leaving.saving);
                 }
-                Event::Saved { document, message } => {
+                Event::Saved {
+                    outgoing,
+                    path,
+                    message,
+                } => {
                     self.message = message;
-                    if let Some((tab, path)) = document {
-                        self.saved(tab, path);
+                    if let Some(tab) = outgoing.document {
+                        self.saved(tab, path, &outgoing.written);
                     }
                 }
             }
@@ -200,12 +204,14 @@ impl Workbench {
         }
     }
 
-    fn saved(&mut self, tab: Tab, path: Option<PathBuf>) {
+    /// Notes what was saved of a view, which may have changed while a dialogue was open.
+    fn saved(&mut self, tab: Tab, path: Option<PathBuf>, written: &Written) {
         #[cfg(not(target_arch = "wasm32"))]
         if let Some(path) = &path {
             self.recent.put(path);
         }
-        let saved = self.text(tab).unwrap_or_default();
+        let text = written.files.first().map(|(_, content)| &content[..]);
+        let saved = String::from_utf8_lossy(text.unwrap_or_default()).into_owned();
         self.documents[tab as usize] = Document { path, saved };
         if let Some(leaving) = self.leaving.take() {
             self.leave(leaving.then);

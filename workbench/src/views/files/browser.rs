@@ -32,7 +32,8 @@ impl Files {
         };
         self.events.push(match given {
             Ok(message) => Event::Saved {
-                document: outgoing.document.map(|tab| (tab, None)),
+                outgoing,
+                path: None,
                 message,
             },
             Err(fault) => Event::Failed(fault),

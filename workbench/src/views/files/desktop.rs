@@ -183,7 +183,8 @@ impl Files {
             self.written.insert(path, content);
         }
         self.events.push(Event::Saved {
-            document: outgoing.document.map(|tab| (tab, first)),
+            outgoing,
+            path: first,
             message,
         });
     }
