@@ -101,7 +101,7 @@ fn controls_leave_what_lies_beyond_their_range_as_it_is() {
         cells: [10, 3],
         grip: Grip {
             displacement: [30.0, 75.0],
-            angle: 1.3,
+            angle: 1.7,
         },
         ..small()
     };

@@ -127,7 +127,7 @@ pub fn card(ui: &mut Ui, label: &str, chosen: &mut CardFile, user_cards: &[CardF
 }
 
 fn grip(ui: &mut Ui, scene: &mut Scene, hold: &mut Hold) {
-    let length = scene.size[0];
+    let (before, length) = (scene.grip, scene.size[0]);
     let mut stretch = 100.0 * scene.stretch();
     let slider = Slider::new(&mut stretch, -20.0..=150.0)
         .suffix(" %")
@@ -163,7 +163,9 @@ fn grip(ui: &mut Ui, scene: &mut Scene, hold: &mut Hold) {
         scene.grip.displacement[1] = 0.0;
         scene.grip.angle = 0.0;
     }
-    scene.grip = within(scene.grip, scene);
+    if scene.grip != before {
+        scene.grip = within(scene.grip, scene);
+    }
 }
 
 fn look(ui: &mut Ui, scene: &mut Scene) {
