@@ -9,7 +9,6 @@ pub mod kind;
 pub mod material;
 pub mod outputs;
 pub mod playing;
-pub mod report;
 pub mod scene;
 pub mod studies;
 pub mod study;

@@ -2,8 +2,6 @@
 
 pub mod app;
 pub mod chart;
-pub mod closer;
-pub mod colour_bar;
 pub mod colours;
 pub mod controls;
 pub mod exports;

@@ -20,9 +20,8 @@ use gelbench_studies::studies::pictures::Pictures;
 
 use super::background::Worker;
 use super::engine::Fault;
-use super::report::Report;
 use super::scene::CardFile;
-use super::studies::{NamedFile, paths};
+use super::studies::{NamedFile, Report, paths};
 
 mod edges;
 mod photo;

@@ -1,4 +1,4 @@
-//! Studies of any kind, run in the background from files in memory.
+//! Studies of any kind, run in the background from files in memory, and their reports as plain data, to be shown and to be exported.
 
 use std::path::{Path, PathBuf};
 
@@ -7,11 +7,12 @@ use serde::{Deserialize, Serialize};
 use gelbench::budget::Budget;
 use gelbench::document::with_files;
 use gelbench::kinds;
+use gelbench::output::vtk;
+use gelbench::results::{Block, Content, Drawing, Outcome, Results};
 use gelbench::studies::Progress;
 
 use super::background::Worker;
 use super::engine::Fault;
-use super::report::Report;
 
 /// A file by its name.
 pub type NamedFile = (String, Vec<u8>);
@@ -50,10 +51,53 @@ pub fn paths(files: &[NamedFile]) -> impl Iterator<Item = (PathBuf, Vec<u8>)> + 
         .map(|(name, content)| (PathBuf::from(name), content.clone()))
 }
 
+/// The results of a study.
+#[derive(Clone, Debug, Deserialize, PartialEq, Serialize)]
+pub struct Report {
+    /// Its title.
+    pub title: String,
+    /// Whether all that was required is met, without a doubt.
+    pub passed: bool,
+    /// The report that the command writes, below its title.
+    pub blocks: Vec<Block>,
+    /// The pictures of its blocks.
+    pub figures: Vec<Drawing>,
+    /// Files to be saved: name and content.
+    pub files: Vec<NamedFile>,
+    /// Computing time in s.
+    pub seconds: f64,
+}
+
+impl From<Results> for Report {
+    fn from(results: Results) -> Self {
+        let figures = results.outcome.figures.iter();
+        Self {
+            passed: results.passed(),
+            blocks: results.report().into_iter().skip(1).collect(),
+            figures: figures.map(|figure| figure.drawing.clone()).collect(),
+            files: files(&results.outcome),
+            title: results.title,
+            seconds: results.seconds,
+        }
+    }
+}
+
+/// Tables and fields: those that the command writes, but for pictures.
+fn files(outcome: &Outcome) -> Vec<NamedFile> {
+    let tables = outcome
+        .files
+        .iter()
+        .filter_map(|(name, content)| match content {
+            Content::Text(text) => Some((name.clone(), text.clone().into_bytes())),
+            Content::Picture(_) => None,
+        });
+    let fields = outcome.grids.iter().flat_map(vtk::files);
+    tables.chain(fields).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use gelbench::results::Block;
 
     fn run(study: &str, text: &str, others: &[NamedFile]) -> Result<Report, Fault> {
         let study_file = (study.to_owned(), text.as_bytes().to_vec());

@@ -11,10 +11,9 @@ use gelbench::results::{Block, Drawing};
 use gelbench_report::results::{MeshFigure, PALETTE, Panel, Scale, Values};
 
 use super::chart;
-use super::colour_bar::colour_bar;
-use super::colours::{Span, colour, range};
+use super::colours::{Span, colour, colour_bar, range};
 use super::surface::View;
-use crate::logic::report::Report;
+use crate::logic::studies::Report;
 
 /// Rows of a table that are shown.
 const ROWS: usize = 200;

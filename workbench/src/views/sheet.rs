@@ -9,12 +9,10 @@ use eframe::egui::{
 
 use gelbench::mesh::Mesh;
 
-use super::closer::Closer;
-use super::colour_bar::colour_bar;
-use super::colours::{Span, colour, most_of};
+use super::colours::{Span, colour, colour_bar, most_of};
 use super::figures::headline;
 use super::grip::{self, Held};
-use super::surface::{View, draw, triangles};
+use super::surface::{Closer, View, draw, triangles};
 use crate::logic::scene::{Layout, Model, Scene};
 use crate::logic::table::{Drawn, Table};
 

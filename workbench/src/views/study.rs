@@ -11,8 +11,7 @@ use super::{figures, report};
 use crate::logic::background::{Background, Wake};
 use crate::logic::engine::Fault;
 use crate::logic::outputs::Wanted;
-use crate::logic::report::Report;
-use crate::logic::studies::{NamedFile, Runner, StudyQuestion};
+use crate::logic::studies::{NamedFile, Report, Runner, StudyQuestion};
 
 /// The state of the view.
 pub struct Studies {
