@@ -24,7 +24,6 @@ use trials::Trials;
 pub mod coverage;
 mod coverage_trial;
 mod inference;
-mod noise;
 mod subject;
 pub mod together;
 mod trial;

@@ -1,9 +1,11 @@
 //! Motion in time against closed forms.
 
+use std::f64::consts::TAU;
 use std::path::Path;
 
 use crate::document::{Bound, Section};
-use crate::dynamics::{MovingSupport, SheetViscosity, TimeFunction};
+use crate::dynamics::spring::Spring;
+use crate::dynamics::{Motion, MovingSupport, SheetViscosity, Start, TimeFunction};
 use crate::error::Error;
 use crate::finite_element::{Element, FiniteElements};
 use crate::mass_spring::{LatticeSettings, MassSpring};
@@ -15,7 +17,6 @@ use motion::{METHODS, NEWMARK, Run, clamped, problem, unknowns_of};
 
 mod frequency;
 mod motion;
-mod spring;
 
 /// Reads a study of this case.
 pub fn prepare(root: &Section, _folder: &Path) -> Computation {
@@ -39,7 +40,7 @@ pub fn prepare(root: &Section, _folder: &Path) -> Computation {
 fn compute(cells: &[usize], progress: Progress) -> Result<Outcome, Error> {
     let mut outcome = Outcome::default();
     progress.tell("spring");
-    outcome.checks.extend(spring::checks()?);
+    outcome.checks.extend(spring_checks()?);
     progress.tell("energy");
     outcome.checks.extend(energy()?);
     progress.tell("frequency");
@@ -47,6 +48,50 @@ fn compute(cells: &[usize], progress: Progress) -> Result<Outcome, Error> {
     progress.tell("relaxation");
     outcome.checks.push(relaxation()?);
     Ok(outcome)
+}
+
+/// A linear spring: ω = √(k/m) = 2 rad/s, and the order of its error in the step, by both methods.
+fn spring_checks() -> Result<Vec<Check>, Error> {
+    let exact = 2.0 / TAU;
+    let spring = Spring {
+        k: 4.0,
+        q: 0.0,
+        c: 0.0,
+    };
+    let motion = Motion {
+        energy: &spring,
+        viscosity: None,
+        mass: vec![1.0],
+        supports: Vec::new(),
+        forces: Vec::new(),
+        start: Start::held_at(vec![1.0]),
+        describe: Box::new(|_| "the spring".into()),
+    };
+    let mut checks = Vec::new();
+    for (name, integrator) in METHODS {
+        let error = |steps: usize| {
+            let run = Run {
+                integrator,
+                step: 1.0 / (exact * steps as f64),
+                count: 10 * steps + steps / 4,
+                every: 1,
+            };
+            Ok::<f64, Error>((run.frequency(&motion, 0)? / exact - 1.0).abs())
+        };
+        let [coarse, fine, finest] = [error(100)?, error(200)?, error(4000)?];
+        let what = "frequency of a linear spring, 4000 steps in a period, relative error";
+        let order = (coarse / fine).log2();
+        checks.extend([
+            check(format!("{name}: {what}"), "–", finest).at_most(1e-6, "√(k/m)"),
+            check(
+                format!("{name}: order of that error in the step"),
+                "–",
+                order,
+            )
+            .equal(2.0, 2.0, "both methods are of second order"),
+        ]);
+    }
+    Ok(checks)
 }
 
 /// The energy of both models over 10⁴ steps after the release from 30 %.

@@ -7,8 +7,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::coverage_trial::{CoverageTrial, Shares};
-use super::noise::CorrelatedDraws;
-use super::subject::{Data, Subject, first_parameter, unknown_grips};
+use super::subject::{CorrelatedDraws, Data, Subject, first_parameter, unknown_grips};
 use super::trials::TARGET;
 use crate::document::{Bound, Section};
 use crate::error::Error;

@@ -6,8 +6,7 @@ use std::sync::Arc;
 
 use rayon::prelude::*;
 
-use super::noise::CorrelatedDraws;
-use super::subject::{Data, Subject, unknown_grips};
+use super::subject::{CorrelatedDraws, Data, Subject, unknown_grips};
 use super::trials::TARGET;
 use super::truth::Truth;
 use crate::document::{Bound, Section};
