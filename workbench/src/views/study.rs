@@ -51,8 +51,9 @@ impl Studies {
         }
     }
 
-    /// Takes a study.
+    /// Takes a study; what is being computed of the one before has no place any more.
     pub fn put(&mut self, name: &str, text: String) {
+        self.runner.stop();
         (self.name, self.text, self.report) = (plain(name), text, None);
         self.unfolds = Some(true);
     }
