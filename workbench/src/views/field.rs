@@ -118,7 +118,9 @@ impl Fields {
 
     /// Looks at the files; one image alone waits for the next.
     fn look(&mut self) {
-        if !self.question.waits_for_images() && !self.question.files.is_empty() {
+        if self.question.waits_for_images() || self.question.files.is_empty() {
+            self.corrector.stop();
+        } else {
             self.ask(false);
         }
     }
