@@ -4,7 +4,8 @@ use nalgebra::{Matrix3, Vector3};
 
 use super::boundary::BoundaryProblem;
 use super::boundary_conditions::Load;
-use super::constraints::{Constraints, FACTORS};
+use super::constraints::{Constraints, FACTORS, Tie};
+use super::rigid_motion::RigidMotion;
 use crate::error::Diagnostic;
 use crate::mesh::Mesh;
 
@@ -54,31 +55,39 @@ impl BoundaryProblem {
     }
 }
 
-/// Whether all prescribed displacements at a load factor are those of one rigid motion.
+/// Whether all prescribed displacements at a load factor are those of one rigid motion, which ties leave free.
 fn is_rigid(mesh: &Mesh, constraints: &Constraints, factor: f64) -> bool {
     let (size, middle) = (mesh.diagonal(), mesh.middle());
-    let prescribed = constraints.held.iter().map(|(unknown, motion)| {
+    let position = |unknown: usize| {
         let at = mesh.nodes[unknown / 2];
-        let position = [0, 1].map(|axis| (at[axis] - middle[axis]) / size);
-        (position, unknown % 2, motion.at(factor) / size)
+        [0, 1].map(|axis| (at[axis] - middle[axis]) / size)
+    };
+    let held = constraints.held.iter();
+    let prescribed = held.map(|(unknown, motion)| {
+        let displacement = motion.at(factor) / size;
+        (position(*unknown), unknown % 2, displacement)
     });
     let prescribed: Vec<_> = prescribed.collect();
     let mut turns = constraints.held.values().map(|motion| motion.angle());
     let turn = turns.find(|angle| *angle != 0.0).unwrap_or(0.0);
-    let Some([angle, rest]) = nearest_motion(&prescribed, factor * turn) else {
+    let Some((rigid, rest)) = nearest_motion(&prescribed, factor * turn) else {
         return false;
     };
-    // A rigid grip does not turn.
-    rest < ROUNDING && (constraints.ties.is_empty() || angle.abs() < ROUNDING)
+    // A rigid grip does not turn, and along an inclined line the sheet moves along the line alone.
+    let moved = |unknown: usize| rigid.at(position(unknown))[unknown % 2];
+    let follows = |(unknown, tie): (&usize, &Tie)| {
+        (moved(*unknown) - tie.share * moved(tie.master)).abs() < ROUNDING
+    };
+    rest < ROUNDING && constraints.ties.iter().all(follows)
 }
 
-/// The angle in rad of the rigid motion nearest to some displacements, by Gauss–Newton from an angle, and the largest distance from it;
+/// The rigid motion nearest to some displacements, by Gauss–Newton from an angle, and the largest distance from it;
 /// `None` where the displacements determine no motion.
 ///
 /// ```text
 /// minimise Σ (a + (R(θ) x − x)ᵢ − uᵢ)²     over a and θ
 /// ```
-fn nearest_motion(prescribed: &[Prescribed], start: f64) -> Option<[f64; 2]> {
+fn nearest_motion(prescribed: &[Prescribed], start: f64) -> Option<(RigidMotion, f64)> {
     const ITERATIONS: usize = 20;
     let mut motion = Vector3::new(0.0, 0.0, start);
     let mut largest = f64::INFINITY;
@@ -97,13 +106,17 @@ fn nearest_motion(prescribed: &[Prescribed], start: f64) -> Option<[f64; 2]> {
         }
         motion += normal.cholesky()?.solve(&right);
     }
-    Some([motion[2], largest])
+    let rigid = RigidMotion {
+        displacement: [motion[0], motion[1]],
+        angle: motion[2],
+    };
+    Some((rigid, largest))
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::boundary_conditions::{Drive, Support};
-    use super::super::tests::samples::{CLAMP, problem, strip};
+    use super::super::tests::samples::{CLAMP, moved, problem, strip, turned};
     use super::*;
     use crate::mesh::CellShape;
     use crate::units::Linear;
@@ -177,5 +190,18 @@ mod tests {
         for load in [Load::Pressure(0.01), Load::Traction([0.0, 0.01])] {
             assert!(!is_unstrained(&[("left", CLAMP)], &[("top", load)]));
         }
+    }
+
+    /// The right side of a turned strip slides along its own line: moved along it the strip is rigid, moved across it is strained.
+    #[test]
+    fn an_inclined_line_strains_a_sheet_that_is_moved_across_it() {
+        let mesh = moved(strip(CellShape::Quad4), 0.3, [0.0; 2]);
+        let is_unstrained = |by: [f64; 2]| {
+            let left = ("left", Support::Displacement(by.map(Some)));
+            let problem = problem(&[left, ("right", Support::Roller)], &[]);
+            problem.unstrained(&mesh).unwrap().is_some()
+        };
+        assert!(is_unstrained(turned([0.0, 5.0], 0.3)));
+        assert!(!is_unstrained([5.0, 1.0]));
     }
 }
