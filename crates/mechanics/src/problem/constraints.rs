@@ -190,8 +190,7 @@ impl Constraints {
             return Err(SupportMisfit::NodeAtCentre);
         }
         if *support == Support::Roller {
-            self.roll(mesh, name, group)?;
-            return Ok(());
+            return self.roll(mesh, name, group);
         }
         let mut axes = [false; 2];
         for axis in [0, 1] {
@@ -243,6 +242,11 @@ impl Constraints {
         let share = -normal[along] / normal[across];
         match unknowns.map(|unknown| self.held.get(&unknown).copied()) {
             [None, None] => {
+                // Others of a pulled grip follow it already, and would follow one that follows.
+                let is_pulled = |(pulled, _): &(usize, f64)| *pulled == unknowns[across];
+                if self.forces.iter().any(is_pulled) {
+                    return Err(SupportMisfit::MovedOffLine);
+                }
                 let tie = Tie {
                     master: unknowns[along],
                     share,
@@ -284,21 +288,16 @@ impl Constraints {
 
     /// Records that a support holds a group along some axes.
     pub fn holds(&mut self, group: &Group, axes: [bool; 2]) {
-        let nodes = |holds: bool| {
-            if holds {
-                group.nodes.iter().copied().collect()
-            } else {
-                BTreeSet::new()
-            }
-        };
+        let nodes: BTreeSet<usize> = group.nodes.iter().copied().collect();
+        let held = |holds: bool| nodes.iter().copied().filter(|_| holds).collect();
         self.holders.push(Holder {
             hold: Hold {
                 // Where an edge and a point both hold a node, the force belongs to the edge.
                 rank: usize::from(!group.has_parts()),
-                nodes: axes.map(nodes),
+                nodes: axes.map(held),
                 sides: group.edges.clone(),
             },
-            nodes: group.nodes.iter().copied().collect(),
+            nodes,
             has_parts: group.has_parts(),
         });
     }

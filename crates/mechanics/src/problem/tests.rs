@@ -292,3 +292,17 @@ fn linear_and_radial_displacements_are_those_of_the_place() {
         .unwrap_err();
     assert!(refused[0].message.contains("at the centre"), "{refused:?}");
 }
+
+/// The steep lower side of a turned strip would take along the node that the others of the pulled grip follow.
+#[test]
+fn a_pulled_grip_and_an_inclined_line_share_no_node() {
+    let mesh = moved(strip(CellShape::Quad4), 1.2, [0.0; 2]);
+    let grip = Support::Grip([Drive::Force(0.6), Drive::Force(0.1)]);
+    for supports in [
+        [("left", grip), ("bottom", Support::Roller)],
+        [("bottom", Support::Roller), ("left", grip)],
+    ] {
+        let faults = problem(&supports, &[]).check(&mesh).unwrap_err();
+        assert!(faults[0].message.contains("off that line"), "{faults:?}");
+    }
+}
