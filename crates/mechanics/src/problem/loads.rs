@@ -13,7 +13,7 @@ use super::groups::{edge_lengths, named, refused, shares};
 use super::pressure::Pressures;
 use crate::error::Diagnostic;
 use crate::mesh::Mesh;
-use crate::solve::{DeadForces, Potential, Sum};
+use crate::solve::{Assembly, DeadForces, Potential, Sum};
 
 /// All loads of a problem at load factor 1.
 #[derive(Clone, Debug, Default)]
@@ -97,6 +97,18 @@ impl Loads {
         let forces: Vec<f64> = self.forces.iter().map(|force| factor * force).collect();
         let dead = body.resultant(&forces);
         dead.plus(self.pressures.resultant(factor, u, body.from_middle))
+    }
+
+    /// The forces in N of all loads but the pulls of grips on the unknowns, at a load factor.
+    pub fn nodal_forces(&self, factor: f64, u: &[f64]) -> Vec<f64> {
+        let mut opposed = vec![0.0; u.len()];
+        let pressures = self.pressures.at(factor, u.len());
+        let evaluated = Assembly::residual(&pressures, u, &mut opposed);
+        evaluated.expect("a pressure acts in every state");
+        let forces = self.forces.iter().zip(opposed);
+        forces
+            .map(|(dead, opposed)| factor * dead - opposed)
+            .collect()
     }
 
     /// The potential of an energy with these loads at a load factor.

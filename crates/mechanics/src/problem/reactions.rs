@@ -135,14 +135,18 @@ impl Reactions<'_> {
         /// Forces of which rounding may be more than this share would be judged by rounding alone: they count as large as this limit.
         const ROUNDING_LIMIT: f64 = 1e-7;
         let (model, u) = (self.model, &self.state.displacement);
-        let at_rest = vec![0.0; u.len()];
-        let body = if model.energy.is_objective() {
-            Body::new(model.mesh, u)
+        let factor = self.state.factor;
+        let (body, loads) = if model.energy.is_objective() {
+            let body = Body::new(model.mesh, u);
+            let loads = model.loads.resultant(factor, u, &body);
+            (body, loads)
         } else {
-            Body::new(model.mesh, &at_rest)
+            // Pressures, too, act on the nodes of the body at rest.
+            let body = Body::new(model.mesh, &vec![0.0; u.len()]);
+            let loads = body.resultant(&model.loads.nodal_forces(factor, u));
+            (body, loads)
         };
         let supports = body.resultant(&self.forces);
-        let loads = model.loads.resultant(self.state.factor, u, &body);
         let rounding = self.rounding();
         // NaN in an inverted state does not count as small.
         let is_small = |size: f64| size <= 10.0 * rounding;

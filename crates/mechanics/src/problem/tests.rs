@@ -1,5 +1,8 @@
+use std::sync::Arc;
+
 use super::boundary_conditions::{Drive, Load, Support};
 use crate::error::SolveFault;
+use crate::material::{LinearElastic, PlaneState};
 use crate::mesh::{CellShape, Shape};
 use crate::solve::{Convergence, State};
 use crate::units::parse_linear_length;
@@ -304,5 +307,21 @@ fn a_pulled_grip_and_an_inclined_line_share_no_node() {
     ] {
         let faults = problem(&supports, &[]).check(&mesh).unwrap_err();
         assert!(faults[0].message.contains("off that line"), "{faults:?}");
+    }
+}
+
+/// In a linear theory moments balance on the body at rest, those of a pressure on the deformed edge too.
+#[test]
+fn a_pressure_on_a_linear_sheet_balances() {
+    for (_, shape) in CellShape::NAMES {
+        let mut problem = problem(&[("left", CLAMP)], &[("top", Load::Pressure(0.0005))]);
+        problem.law = Arc::new(LinearElastic {
+            shear_modulus: 0.1,
+            lame_modulus: 0.2,
+            plane: PlaneState::Stress,
+        });
+        let balance = solved(&problem, &strip(shape), &[]).balance;
+        assert!(balance.largest_force > 1e-3);
+        assert!(balance.relative() < 1e-9, "{shape:?}: {balance:?}");
     }
 }
