@@ -159,12 +159,13 @@ impl BoundaryProblem {
         Ok(idle)
     }
 
-    /// The unknowns of a mesh that are held, each with the number of the support that holds it; of several, which must agree, the first.
+    /// The unknowns of a mesh that are held, each with the number of the support that holds it; of several, which must agree, the first. Where
+    /// another support or a second line meets an inclined line, that line holds what they leave free.
     ///
     /// # Errors
     /// A [`Diagnostic`] when a support names no group of the mesh, or when supports contradict each other.
     pub fn held_by(&self, mesh: &Mesh) -> Result<BTreeMap<usize, usize>, Diagnostic> {
-        agreeing(&self.supports, mesh)?;
+        let all = agreeing(&self.supports, mesh)?;
         let mut by = BTreeMap::new();
         for (number, support) in self.supports.iter().enumerate().rev() {
             let constraints = Constraints::of(mesh, std::slice::from_ref(support))?;
@@ -174,6 +175,19 @@ impl BoundaryProblem {
                     .into_keys()
                     .map(|unknown| (unknown, number)),
             );
+        }
+        for unknown in all.held.into_keys() {
+            let slides = |(group, support): &(String, Support)| {
+                let nodes = &mesh.groups()[group].nodes;
+                *support == Support::Roller && nodes.contains(&(unknown / 2))
+            };
+            let mut supports = self.supports.iter();
+            let line = match unknown % 2 {
+                _ if by.contains_key(&unknown) => None,
+                0 => supports.position(slides),
+                _ => supports.rposition(slides),
+            };
+            by.extend(line.map(|number| (unknown, number)));
         }
         Ok(by)
     }

@@ -16,9 +16,12 @@ impl BoundaryProblem {
         Ok(singular_points(mesh, &self.fixed_nodes(mesh)?))
     }
 
-    /// The nodes that one support, or a grip with given forces, holds along both axes. Two symmetry lines that cross do not bound the sheet.
+    /// The nodes that one support, or a grip with given forces, holds along both axes. Symmetry lines, inclined or crossing, do not bound the
+    /// sheet.
     fn fixed_nodes(&self, mesh: &Mesh) -> Result<BTreeSet<usize>, Diagnostic> {
-        let (held, ties) = (self.held_by(mesh)?, self.ties(mesh)?);
+        let (held, mut ties) = (self.held_by(mesh)?, self.ties(mesh)?);
+        // A node on an inclined line follows itself.
+        ties.retain(|unknown, tie| unknown / 2 != tie.master / 2);
         let masters: BTreeSet<usize> = ties.values().map(|tie| tie.master).collect();
         let is_tied = |unknown: &usize| ties.contains_key(unknown) || masters.contains(unknown);
         let is_fixed = |node: &usize| {
@@ -53,26 +56,14 @@ pub fn singular_points(mesh: &Mesh, fixed: &BTreeSet<usize>) -> Vec<[f64; 2]> {
 
 #[cfg(test)]
 mod tests {
-    use std::sync::Arc;
-
+    use super::super::tests::samples::{moved, problem, strip};
     use super::*;
-    use crate::material::NeoHooke;
     use crate::mesh::{CellShape, Shape};
     use crate::problem::{Drive, Support};
 
     fn points(supports: &[(&str, Support)]) -> Vec<[f64; 2]> {
-        let supports = supports.iter();
-        let problem = BoundaryProblem {
-            thickness: 1.0,
-            law: Arc::new(NeoHooke { c10: 0.05 }),
-            regions: Vec::new(),
-            supports: supports
-                .map(|(group, support)| ((*group).to_owned(), *support))
-                .collect(),
-            loads: Vec::new(),
-        };
         let mesh = Shape::Strip { size: [20.0, 10.0] }.mesh(4, CellShape::Quad9);
-        problem.singular_points(&mesh).unwrap()
+        problem(supports, &[]).singular_points(&mesh).unwrap()
     }
 
     #[test]
@@ -98,5 +89,16 @@ mod tests {
                 assert!(ends.iter().all(|end| end[0] == 20.0));
             }
         }
+    }
+
+    #[test]
+    fn turned_symmetry_lines_end_at_no_singular_point_and_hold_their_corner() {
+        let mesh = moved(strip(CellShape::Quad9), 0.3, [0.0; 2]);
+        let lines = [("left", Support::Roller), ("bottom", Support::Roller)];
+        let problem = problem(&lines, &[]);
+        assert_eq!(problem.singular_points(&mesh), Ok(Vec::new()));
+        let corner = mesh.groups()["bottom-left"].nodes[0];
+        let held: Vec<(usize, usize)> = problem.held_by(&mesh).unwrap().into_iter().collect();
+        assert_eq!(held, [(2 * corner, 0), (2 * corner + 1, 1)]);
     }
 }
