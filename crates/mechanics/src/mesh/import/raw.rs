@@ -152,7 +152,11 @@ impl Raw {
     fn nodes(&self, unit: f64) -> Result<(Vec<[f64; 2]>, Numbers), Unreadable> {
         let (mut nodes, mut names) = (Vec::new(), HashMap::new());
         let mut height: Option<f64> = None;
-        for name in self.used() {
+        let used = self.used();
+        let positions = used.iter().filter_map(|name| self.positions.get(name));
+        let coordinates = positions.flat_map(|[x, y, _]| [x.abs(), y.abs()]);
+        let largest = coordinates.fold(0.0, f64::max);
+        for name in used {
             let Some([x, y, z]) = self.positions.get(&name) else {
                 return Err(
                     format!("has a cell with the node {name}, which it does not contain").into(),
@@ -162,7 +166,7 @@ impl Raw {
                 return Err(format!("has the node {name} at a place that is not a number").into());
             }
             let plane = *height.get_or_insert(*z);
-            if (z - plane).abs() > 1e-9 * (x.abs() + y.abs()).max(1e-300) {
+            if (z - plane).abs() > 1e-9 * largest {
                 return Err(format!(
                     "is not flat: the node {name} lies at z = {z}, others at {plane}; a sheet lies in the plane of x and y"
                 )

@@ -54,6 +54,16 @@ fn both_versions_of_gmsh_are_read_with_their_groups() {
     }
 }
 
+#[test]
+fn a_sheet_is_flat_up_to_rounding_wherever_its_nodes_lie() {
+    // A node at the origin, and one that is off the plane by rounding.
+    let nodes = "1 0 0 0\n2 1 0 0\n3 1 1 0\n5 0 1 0\n";
+    let rounded = |z: &str| format!("1 0 -1 {z}\n2 1 -1 0\n3 1 0 0\n5 0 0 0\n");
+    let with = |z: &str| read("a.msh", &VERSION_2.replace(nodes, &rounded(z)));
+    assert!(with("1e-15").is_ok());
+    assert!(with("1e-6").unwrap_err().contains("not flat"));
+}
+
 /// A triangle of six nodes.
 const SIX: [[f64; 2]; 6] = [
     [0.0, 0.0],
