@@ -153,7 +153,7 @@ fn lost_groups(groups: &BTreeMap<String, Vec<[u64; 2]>>, mesh: &Mesh) -> Vec<Dia
             }
             lost => format!(
                 "{} of {} lines of the group `{name}` are not sides of cells and are left out",
-                lost - inner,
+                lost.saturating_sub(inner),
                 lines.len()
             ),
         };

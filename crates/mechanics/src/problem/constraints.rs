@@ -141,7 +141,7 @@ impl Holder {
             // A point with a support of its own is not part of the edge around it.
             return BTreeSet::new();
         }
-        if !self.has_parts || !group.has_parts() {
+        if !self.has_parts || !group.has_parts() || self.nodes.iter().eq(&group.nodes) {
             let nodes = group.nodes.iter().copied();
             return nodes.filter(|node| held_nodes.contains(node)).collect();
         }

@@ -88,7 +88,7 @@ pub fn import_field(
     } = import_series(path, unit, array)?;
     let near = |step: &ImportedStep| {
         step.time
-            .is_some_and(|known| (known - time).abs() <= NEAR * time)
+            .is_some_and(|known| (known - time).abs() <= NEAR * time.abs())
     };
     let timeless = |step: &ImportedStep| step.time.is_none();
     let chosen = steps.iter().rposition(near).or_else(|| {

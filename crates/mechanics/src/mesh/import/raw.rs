@@ -192,6 +192,7 @@ impl Raw {
         }
     }
 
+    /// Names parts of the boundary and lines on the sheet; points of the same name belong to them.
     fn name_lines(&self, mesh: &mut Mesh, names: &Numbers) {
         if self.lines.is_empty() {
             return;
@@ -206,12 +207,14 @@ impl Raw {
                 let named = |side: &&Vec<usize>| ends.contains(&key(side[0], side[1]));
                 sides.iter().filter(named).cloned().collect()
             };
+            let points = self.points.get(name).into_iter().flatten();
             let group = Group {
+                nodes: points.filter_map(|node| names.get(node).copied()).collect(),
                 edges: on_lines(mesh.boundary()),
                 lines: on_lines(&inner),
                 ..Group::default()
             };
-            if !(group.edges.is_empty() && group.lines.is_empty()) {
+            if group.has_parts() {
                 mesh.put_group(name, group);
             }
         }

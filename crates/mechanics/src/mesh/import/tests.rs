@@ -55,6 +55,18 @@ fn both_versions_of_gmsh_are_read_with_their_groups() {
 }
 
 #[test]
+fn points_and_lines_of_one_name_are_one_group() {
+    let text = VERSION_2.replace("2\n1 7 ", "3\n0 3 \"lower side\"\n1 7 ");
+    let text = text.replace("$Elements\n3\n", "$Elements\n4\n4 15 2 3 1 5\n");
+    let mesh = read("a.msh", &text).unwrap();
+    let group = &mesh.groups()["lower side"];
+    assert_eq!(
+        (&group.nodes[..], &group.edges[..]),
+        (&[0, 1, 3][..], &[vec![0, 1]][..])
+    );
+}
+
+#[test]
 fn a_sheet_is_flat_up_to_rounding_wherever_its_nodes_lie() {
     // A node at the origin, and one that is off the plane by rounding.
     let nodes = "1 0 0 0\n2 1 0 0\n3 1 1 0\n5 0 1 0\n";
