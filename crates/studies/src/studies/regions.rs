@@ -119,6 +119,9 @@ pub fn divided(mesh: &Mesh) -> Option<String> {
     quoted(&parts).filter(|_| cells.sum::<usize>() == mesh.cell_count())
 }
 
+/// Regions with cards of their own at most: their numbers, and that of the remaining cells, are single bytes.
+const MOST: usize = u8::MAX as usize - 1;
+
 /// What is wrong with a region of a mesh that follows others which have a card, and the remedy.
 pub fn fault_of(region: &str, before: &[&str], mesh: &Mesh) -> Option<(String, String)> {
     let fault = |message: String, hint: &str| Some((message, hint.to_owned()));
@@ -146,6 +149,10 @@ pub fn fault_of(region: &str, before: &[&str], mesh: &Mesh) -> Option<(String, S
     if before.contains(&region) {
         let message = format!("the region `{region}` has a card already");
         return fault(message, "leave out one of the two");
+    }
+    if before.len() >= MOST {
+        let message = format!("more than {MOST} regions have cards of their own");
+        return fault(message, "name cells of one material as one region");
     }
     let cells = &mesh.groups()[region].cells;
     let shared = before.iter().filter_map(|other| {
