@@ -186,11 +186,13 @@ impl Specimen {
             let Support::Grip(drives) = support else {
                 return None;
             };
-            let given = |drive: &Drive| matches!(drive, Drive::Force(force) if *force != 0.0);
-            let axis = drives.iter().position(given)?;
-            Some(Pushed {
+            let [x, y] = drives.map(|drive| match drive {
+                Drive::Force(force) => force.abs(),
+                Drive::Displacement(_) => 0.0,
+            });
+            (x != 0.0 || y != 0.0).then_some(Pushed {
                 group,
-                axis: Some(axis),
+                axis: Some(usize::from(y > x)),
             })
         });
         let loads = self.problem.loads.iter().map(|(group, load)| Pushed {
