@@ -22,12 +22,11 @@ mod unstructured;
 mod vtk;
 mod vtu;
 
-use raw::{Raw, Unreadable, read_text};
+pub use raw::ImportFault;
+use raw::{Raw, read_text};
 use sides::doubtful_sides;
 
-pub use field::{
-    ImportFault, ImportedField, ImportedSeries, ImportedStep, import_field, import_series,
-};
+pub use field::{ImportedField, ImportedSeries, ImportedStep, import_field, import_series};
 pub use given::MeshData;
 
 /// How a mesh is read from a file.
@@ -68,7 +67,7 @@ pub fn import(
     sound(raw, &name, reading)
 }
 
-fn unreadable(name: &str, reason: Unreadable) -> Vec<Diagnostic> {
+fn unreadable(name: &str, reason: ImportFault) -> Vec<Diagnostic> {
     let hint =
         "a mesh file is Gmsh's .msh (ASCII, 2.2 or 4.1), Abaqus' .inp, .vtu or .vtk, and is flat";
     vec![Diagnostic::error("", format!("{name} {reason}")).hint(hint)]
@@ -112,7 +111,7 @@ fn sound(
     Ok((if mixed { mesh.quadratic() } else { mesh }, faults))
 }
 
-fn read(path: &Path) -> Result<Raw, Unreadable> {
+fn read(path: &Path) -> Result<Raw, ImportFault> {
     let ending = path
         .extension()
         .map(|ending| ending.to_string_lossy().to_lowercase());

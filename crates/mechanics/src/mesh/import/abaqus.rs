@@ -8,7 +8,7 @@
 
 use std::collections::HashMap;
 
-use super::raw::{Raw, Unreadable};
+use super::raw::{ImportFault, Raw};
 use crate::mesh::cell_shape::CellShape;
 
 mod placement;
@@ -46,7 +46,7 @@ enum Block {
 ///
 /// # Errors
 /// A description of what is wrong or cannot be read.
-pub fn read(text: &str) -> Result<Raw, Unreadable> {
+pub fn read(text: &str) -> Result<Raw, ImportFault> {
     let mut input = Input::default();
     let mut block = Block::Other;
     let mut lines = text
@@ -269,7 +269,7 @@ impl Input {
     }
 
     /// The mesh with its sets; sets of nodes that no cell has, such as reference points, are left out.
-    fn finish(mut self) -> Result<Raw, Unreadable> {
+    fn finish(mut self) -> Result<Raw, ImportFault> {
         self.assembly.put(&mut self.raw.positions)?;
         for (name, numbers) in resolved(&self.element_sets)? {
             let cells = numbers
@@ -320,7 +320,7 @@ fn members(fields: &[&str], is_range: bool) -> Result<Vec<Member>, String> {
 }
 
 /// The numbers of sets, with those of sets that stand above them.
-fn resolved(sets: &[(String, Vec<Member>)]) -> Result<Vec<(String, Vec<u64>)>, Unreadable> {
+fn resolved(sets: &[(String, Vec<Member>)]) -> Result<Vec<(String, Vec<u64>)>, ImportFault> {
     let mut all: Vec<(String, Vec<u64>)> = Vec::new();
     for (name, members) in sets {
         let mut numbers = Vec::new();

@@ -3,34 +3,10 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use super::raw::{Raw, Step, Unreadable, read_text};
+use super::raw::{ImportFault, Raw, Step, read_text};
 use super::{frd, gmsh, pvd, vtk};
 use crate::mesh::cells::Mesh;
 use crate::units::{self, Dimension};
-
-/// Contents of a file that cannot be read as a displacement field, as a predicate that follows the file's name.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{reason}")]
-pub struct ImportFault {
-    reason: String,
-    /// The remedy, where it is not to give another file.
-    pub remedy: Option<String>,
-}
-
-impl From<Unreadable> for ImportFault {
-    fn from(fault: Unreadable) -> Self {
-        fault.to_string().into()
-    }
-}
-
-impl From<String> for ImportFault {
-    fn from(reason: String) -> Self {
-        Self {
-            reason,
-            remedy: None,
-        }
-    }
-}
 
 /// A displacement field and its mesh.
 #[derive(Clone, Debug)]
@@ -129,10 +105,6 @@ pub fn import_series(
     unit: f64,
     array: Option<&str>,
 ) -> Result<ImportedSeries, ImportFault> {
-    Ok(read_series(path, unit, array)?)
-}
-
-fn read_series(path: &Path, unit: f64, array: Option<&str>) -> Result<ImportedSeries, Unreadable> {
     let ending = path
         .extension()
         .map(|ending| ending.to_string_lossy().to_lowercase());
@@ -163,7 +135,7 @@ fn read_series(path: &Path, unit: f64, array: Option<&str>) -> Result<ImportedSe
 }
 
 /// The files of a collection as the steps of one series; they must have one mesh.
-fn collection(path: &Path, unit: f64, array: Option<&str>) -> Result<ImportedSeries, Unreadable> {
+fn collection(path: &Path, unit: f64, array: Option<&str>) -> Result<ImportedSeries, ImportFault> {
     let mut combined: Option<ImportedSeries> = None;
     for (time, file) in pvd::read(&read_text(path)?)? {
         let name = file.clone();
@@ -174,7 +146,7 @@ fn collection(path: &Path, unit: f64, array: Option<&str>) -> Result<ImportedSer
         {
             return Err(format!("names the collection {name} as one of its files").into());
         }
-        let mut part = read_series(&file, unit, array)
+        let mut part = import_series(&file, unit, array)
             .map_err(|reason| format!("names {name}, which {reason}"))?;
         for step in &mut part.steps {
             step.time = Some(time);
@@ -194,7 +166,7 @@ fn collection(path: &Path, unit: f64, array: Option<&str>) -> Result<ImportedSer
     combined.ok_or_else(|| "names no files".into())
 }
 
-fn series(raw: Raw, unit: f64, fields: &[Step], name: &str) -> Result<ImportedSeries, Unreadable> {
+fn series(raw: Raw, unit: f64, fields: &[Step], name: &str) -> Result<ImportedSeries, ImportFault> {
     let used: BTreeSet<u64> = raw.used();
     let unit_of_values = unit_of(name).unwrap_or(unit);
     let step = |(time, field): &Step| {
@@ -234,7 +206,7 @@ fn series(raw: Raw, unit: f64, fields: &[Step], name: &str) -> Result<ImportedSe
 fn choose<T>(
     mut arrays: Vec<(String, T)>,
     wanted: Option<&str>,
-) -> Result<(String, T), Unreadable> {
+) -> Result<(String, T), ImportFault> {
     let names: Vec<String> = arrays.iter().map(|(name, _)| name.clone()).collect();
     if names.is_empty() {
         return Err("contains no vectors at its points, and so no displacement".into());

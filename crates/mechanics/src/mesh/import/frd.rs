@@ -15,7 +15,7 @@
 
 use std::collections::HashMap;
 
-use super::raw::{Raw, Unreadable};
+use super::raw::{ImportFault, Raw};
 use crate::mesh::cell_shape::CellShape;
 
 /// A file, before a step is chosen.
@@ -61,7 +61,7 @@ struct Reader {
 }
 
 /// Reads the text of a file.
-pub fn read(text: &str) -> Result<Results, Unreadable> {
+pub fn read(text: &str) -> Result<Results, ImportFault> {
     let mut reader = Reader {
         results: Results::default(),
         block: Block::Other,
@@ -86,7 +86,7 @@ pub fn read(text: &str) -> Result<Results, Unreadable> {
 }
 
 impl Reader {
-    fn line(&mut self, line: &str, fault: &dyn Fn(&str) -> String) -> Result<(), Unreadable> {
+    fn line(&mut self, line: &str, fault: &dyn Fn(&str) -> String) -> Result<(), ImportFault> {
         let words: Vec<&str> = line.split_whitespace().collect();
         match (&self.block, words.as_slice()) {
             (_, ["2C" | "3C", .., format]) => {
@@ -139,12 +139,12 @@ impl Reader {
         Ok(())
     }
 
-    fn keep_element(&mut self) -> Result<(), Unreadable> {
+    fn keep_element(&mut self) -> Result<(), ImportFault> {
         self.solid |= keep(&mut self.results.raw, self.element.take())?;
         Ok(())
     }
 
-    fn node(&self, line: &str, fault: &dyn Fn(&str) -> String) -> Result<u64, Unreadable> {
+    fn node(&self, line: &str, fault: &dyn Fn(&str) -> String) -> Result<u64, ImportFault> {
         let number = line
             .get(3..3 + self.width)
             .and_then(|field| field.trim().parse().ok());
@@ -152,7 +152,7 @@ impl Reader {
     }
 }
 
-fn digits(format: &str) -> Result<usize, Unreadable> {
+fn digits(format: &str) -> Result<usize, ImportFault> {
     match format {
         "0" => Ok(5),
         "1" => Ok(10),
@@ -175,7 +175,7 @@ fn numbers(line: &str, width: usize) -> Option<[f64; 3]> {
 }
 
 /// Adds an element as a cell; returns whether it was a solid.
-fn keep(raw: &mut Raw, element: Option<(usize, Vec<u64>)>) -> Result<bool, Unreadable> {
+fn keep(raw: &mut Raw, element: Option<(usize, Vec<u64>)>) -> Result<bool, ImportFault> {
     let Some((number, nodes)) = element else {
         return Ok(false);
     };
@@ -203,7 +203,7 @@ fn keep(raw: &mut Raw, element: Option<(usize, Vec<u64>)>) -> Result<bool, Unrea
 }
 
 /// Takes the mean displacement of all nodes above each other.
-fn flatten(results: &mut Results) -> Result<(), Unreadable> {
+fn flatten(results: &mut Results) -> Result<(), ImportFault> {
     let positions = &results.raw.positions;
     let key = |position: &[f64; 3]| [position[0] + 0.0, position[1] + 0.0].map(f64::to_bits);
     let mut columns: HashMap<[u64; 2], Vec<u64>> = HashMap::new();

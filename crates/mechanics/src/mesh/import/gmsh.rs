@@ -3,11 +3,11 @@
 use std::collections::HashMap;
 use std::str::{FromStr, SplitWhitespace};
 
-use super::raw::{BINARY, Displacements, Raw, Step, Unreadable};
+use super::raw::{BINARY, Displacements, ImportFault, Raw, Step};
 use crate::mesh::cell_shape::CellShape;
 
 /// Reads the text of a file.
-pub fn read(text: &str) -> Result<Raw, Unreadable> {
+pub fn read(text: &str) -> Result<Raw, ImportFault> {
     let mut format = section(text, "MeshFormat")?;
     let version: f64 = format.next()?;
     if format.next::<i64>()? != 0 {
@@ -22,7 +22,7 @@ pub fn read(text: &str) -> Result<Raw, Unreadable> {
 }
 
 /// The views of vectors at the nodes (`$NodeData`) by their names, each with its steps: times and values by node.
-pub fn views(text: &str) -> Result<Vec<(String, Vec<Step>)>, Unreadable> {
+pub fn views(text: &str) -> Result<Vec<(String, Vec<Step>)>, ImportFault> {
     let mut views: Vec<(String, Vec<_>)> = Vec::new();
     for section in text.split("$NodeData").skip(1) {
         let section = section.split("$EndNodeData").next().unwrap_or_default();
@@ -52,7 +52,7 @@ pub fn views(text: &str) -> Result<Vec<(String, Vec<Step>)>, Unreadable> {
 }
 
 /// One step of a view after its names; `None` where its values are not vectors.
-fn view_step(words: &mut Words) -> Result<Option<Step>, Unreadable> {
+fn view_step(words: &mut Words) -> Result<Option<Step>, ImportFault> {
     let reals: Vec<f64> = (0..words.next::<usize>()?)
         .map(|_| words.next())
         .collect::<Result<_, _>>()?;
@@ -85,7 +85,7 @@ struct Words<'a> {
 }
 
 impl Words<'_> {
-    fn next<T: FromStr>(&mut self) -> Result<T, Unreadable> {
+    fn next<T: FromStr>(&mut self) -> Result<T, ImportFault> {
         let name = self.name;
         let word = self.words.next();
         let word = word.ok_or_else(|| format!("ends within ${name}"))?;
@@ -93,12 +93,12 @@ impl Words<'_> {
         Ok(number.ok_or_else(|| format!("has \"{word}\" in ${name}, where a number should be"))?)
     }
 
-    fn skip(&mut self, count: usize) -> Result<(), Unreadable> {
+    fn skip(&mut self, count: usize) -> Result<(), ImportFault> {
         (0..count).try_for_each(|_| self.next::<f64>().map(|_| ()))
     }
 
     /// A whole number; some programs write it with a decimal point.
-    fn integer(&mut self) -> Result<u64, Unreadable> {
+    fn integer(&mut self) -> Result<u64, ImportFault> {
         let number: f64 = self.next()?;
         if number < 0.0 || number.fract() != 0.0 {
             return Err(format!(
@@ -110,7 +110,7 @@ impl Words<'_> {
         Ok(number as u64)
     }
 
-    fn list(&mut self, count: usize) -> Result<Vec<u64>, Unreadable> {
+    fn list(&mut self, count: usize) -> Result<Vec<u64>, ImportFault> {
         (0..count).map(|_| self.integer()).collect()
     }
 }
@@ -125,7 +125,7 @@ fn body<'a>(text: &'a str, name: &str) -> Option<&'a str> {
     )
 }
 
-fn section<'a>(text: &'a str, name: &'static str) -> Result<Words<'a>, Unreadable> {
+fn section<'a>(text: &'a str, name: &'static str) -> Result<Words<'a>, ImportFault> {
     let body = body(text, name).ok_or_else(|| format!("has no ${name}"))?;
     Ok(Words {
         name,
@@ -133,7 +133,7 @@ fn section<'a>(text: &'a str, name: &'static str) -> Result<Words<'a>, Unreadabl
     })
 }
 
-fn names(text: &str) -> Result<Names, Unreadable> {
+fn names(text: &str) -> Result<Names, ImportFault> {
     let body = body(text, "PhysicalNames").unwrap_or_default();
     let mut names = Names::new();
     for line in body.lines().skip(1).filter(|line| !line.trim().is_empty()) {
@@ -167,7 +167,7 @@ enum Kind {
     Cell(CellShape),
 }
 
-fn kind(number: i64) -> Result<(Kind, usize), Unreadable> {
+fn kind(number: i64) -> Result<(Kind, usize), ImportFault> {
     Ok(match number {
         15 => (Kind::Point, 1),
         1 => (Kind::Line, 2),
@@ -207,7 +207,7 @@ impl Raw {
     }
 }
 
-fn version_2(text: &str, names: &Names) -> Result<Raw, Unreadable> {
+fn version_2(text: &str, names: &Names) -> Result<Raw, ImportFault> {
     let mut raw = Raw::default();
     let mut words = section(text, "Nodes")?;
     for _ in 0..words.next::<usize>()? {
@@ -238,7 +238,7 @@ fn version_2(text: &str, names: &Names) -> Result<Raw, Unreadable> {
     Ok(raw)
 }
 
-fn version_4(text: &str, names: &Names) -> Result<Raw, Unreadable> {
+fn version_4(text: &str, names: &Names) -> Result<Raw, ImportFault> {
     let mut raw = Raw::default();
     let groups = entities(text, names)?;
     let mut words = section(text, "Nodes")?;
@@ -274,7 +274,7 @@ fn version_4(text: &str, names: &Names) -> Result<Raw, Unreadable> {
 }
 
 /// The names of the physical groups of points, curves and surfaces, by dimension and number of the entity.
-fn entities(text: &str, names: &Names) -> Result<HashMap<(i64, i64), Vec<String>>, Unreadable> {
+fn entities(text: &str, names: &Names) -> Result<HashMap<(i64, i64), Vec<String>>, ImportFault> {
     let mut groups = HashMap::new();
     if body(text, "Entities").is_none() {
         return Ok(groups);

@@ -1,12 +1,12 @@
 //! ParaView's collections of files (`.pvd`).
 
-use super::raw::Unreadable;
+use super::raw::ImportFault;
 use super::vtu::attributes;
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
 
 /// The times and the files that the text of a collection names, in its order.
-pub fn read(text: &str) -> Result<Vec<(f64, String)>, Unreadable> {
+pub fn read(text: &str) -> Result<Vec<(f64, String)>, ImportFault> {
     let mut reader = Reader::from_str(text);
     let mut files = Vec::new();
     loop {
@@ -21,7 +21,7 @@ pub fn read(text: &str) -> Result<Vec<(f64, String)>, Unreadable> {
     }
 }
 
-fn data_set(tag: &BytesStart) -> Result<(f64, String), Unreadable> {
+fn data_set(tag: &BytesStart) -> Result<(f64, String), ImportFault> {
     let attributes = attributes(tag)?;
     let value = |name: &str| {
         let text = attributes.get(name).cloned();

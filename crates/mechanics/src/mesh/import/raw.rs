@@ -10,20 +10,27 @@ use crate::mesh::cells::{Group, Mesh};
 use crate::mesh::geometry::{check_size, polygon_area};
 use crate::mesh::refine::key;
 
-/// Why the contents of a file of another program cannot be read, as a predicate of the file: "is cut off".
+/// Why the contents of a file of another program cannot be read, as a predicate that follows the file's name: "is cut off".
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{0}")]
-pub struct Unreadable(String);
+#[error("{reason}")]
+pub struct ImportFault {
+    pub(super) reason: String,
+    /// The remedy, where it is not to give another file.
+    pub remedy: Option<String>,
+}
 
-impl From<String> for Unreadable {
+impl From<String> for ImportFault {
     fn from(reason: String) -> Self {
-        Self(reason)
+        Self {
+            reason,
+            remedy: None,
+        }
     }
 }
 
-impl From<&str> for Unreadable {
+impl From<&str> for ImportFault {
     fn from(reason: &str) -> Self {
-        Self(reason.to_owned())
+        reason.to_owned().into()
     }
 }
 
@@ -52,13 +59,13 @@ pub struct Raw {
 }
 
 /// The bytes of a file.
-pub fn read_bytes(path: &Path) -> Result<Vec<u8>, Unreadable> {
+pub fn read_bytes(path: &Path) -> Result<Vec<u8>, ImportFault> {
     let bytes = file::read_bytes(path, file::MOST_OF_DATA);
     bytes.map_err(|fault| format!("cannot be read: {fault}").into())
 }
 
 /// The text of a file.
-pub fn read_text(path: &Path) -> Result<String, Unreadable> {
+pub fn read_text(path: &Path) -> Result<String, ImportFault> {
     String::from_utf8(read_bytes(path)?).map_err(|_| BINARY.into())
 }
 
@@ -124,7 +131,7 @@ impl Raw {
         }
     }
 
-    pub fn mesh(self, unit: f64) -> Result<Mesh, Unreadable> {
+    pub fn mesh(self, unit: f64) -> Result<Mesh, ImportFault> {
         if self.cells.is_empty() {
             return Err("contains no triangles or quadrilaterals".into());
         }
@@ -149,7 +156,7 @@ impl Raw {
     }
 
     /// The nodes of the cells in mm, and their numbers in the mesh by those of the file.
-    fn nodes(&self, unit: f64) -> Result<(Vec<[f64; 2]>, Numbers), Unreadable> {
+    fn nodes(&self, unit: f64) -> Result<(Vec<[f64; 2]>, Numbers), ImportFault> {
         let (mut nodes, mut names) = (Vec::new(), HashMap::new());
         let mut height: Option<f64> = None;
         let used = self.used();
@@ -220,7 +227,7 @@ impl Raw {
         }
     }
 
-    fn name_sets(&self, mesh: &mut Mesh, names: &Numbers) -> Result<(), Unreadable> {
+    fn name_sets(&self, mesh: &mut Mesh, names: &Numbers) -> Result<(), ImportFault> {
         for (name, set) in &self.sets {
             let nodes = set.iter().filter_map(|node| names.get(node).copied());
             let nodes: BTreeSet<usize> = nodes.collect();

@@ -1,6 +1,6 @@
 //! VTK's unstructured grids.
 
-use super::raw::{Raw, Unreadable};
+use super::raw::{ImportFault, Raw};
 use crate::mesh::cell_shape::CellShape;
 
 /// Cell arrays in which meshio and Gmsh keep the numbers of physical groups.
@@ -29,7 +29,7 @@ pub type Arrays = Vec<(String, Vec<f64>)>;
 
 impl UnstructuredGrid {
     /// The faces, and the named lines and parts.
-    pub fn raw(&self) -> Result<Raw, Unreadable> {
+    pub fn raw(&self) -> Result<Raw, ImportFault> {
         let mut raw = Raw::default();
         for (name, position) in (0..).zip(self.points.chunks_exact(3)) {
             raw.positions
@@ -60,7 +60,7 @@ impl UnstructuredGrid {
 }
 
 /// The kind of a face by VTK's number.
-fn shape(kind: u8, nodes: usize) -> Result<CellShape, Unreadable> {
+fn shape(kind: u8, nodes: usize) -> Result<CellShape, ImportFault> {
     let shape = match (CellShape::of_vtk_number(kind), kind, nodes) {
         (Some(shape), ..) => shape,
         // Lagrange's triangles and quadrilaterals.

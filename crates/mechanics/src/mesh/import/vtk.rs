@@ -7,17 +7,17 @@ use vtkio::model::{
     Attribute, DataSet, IOBuffer, Piece, UnstructuredGridPiece, VertexNumbers, Vtk,
 };
 
-use super::raw::{Raw, Unreadable, read_bytes};
+use super::raw::{ImportFault, Raw, read_bytes};
 use super::unstructured::{Arrays, CUT_OFF, UnstructuredGrid};
 use super::vtu;
 
 /// Reads a `.vtu` or `.vtk` file.
-pub fn read(path: &Path) -> Result<Raw, Unreadable> {
+pub fn read(path: &Path) -> Result<Raw, ImportFault> {
     grid(path)?.raw()
 }
 
 /// Reads a file with its arrays of vectors at the points.
-pub fn read_with_arrays(path: &Path) -> Result<(Raw, Arrays), Unreadable> {
+pub fn read_with_arrays(path: &Path) -> Result<(Raw, Arrays), ImportFault> {
     let grid = grid(path)?;
     let raw = grid.raw()?;
     let points = raw.positions.len();
@@ -27,7 +27,7 @@ pub fn read_with_arrays(path: &Path) -> Result<(Raw, Arrays), Unreadable> {
     Ok((raw, arrays.collect()))
 }
 
-fn grid(path: &Path) -> Result<UnstructuredGrid, Unreadable> {
+fn grid(path: &Path) -> Result<UnstructuredGrid, ImportFault> {
     let bytes = read_bytes(path)?;
     let is_legacy = bytes.starts_with(b"# vtk DataFile");
     if is_legacy {
@@ -38,7 +38,7 @@ fn grid(path: &Path) -> Result<UnstructuredGrid, Unreadable> {
 }
 
 /// A legacy file.
-fn legacy(bytes: &[u8]) -> Result<UnstructuredGrid, Unreadable> {
+fn legacy(bytes: &[u8]) -> Result<UnstructuredGrid, ImportFault> {
     check_legacy(bytes)?;
     // The library panics on some files that are cut off.
     let parsed = catch_unwind(AssertUnwindSafe(|| Vtk::parse_legacy_be(bytes)));
@@ -58,7 +58,7 @@ fn legacy(bytes: &[u8]) -> Result<UnstructuredGrid, Unreadable> {
 
 /// Refuses legacy files of the version 5, which list their cells in another way, and numbers of points or cells that
 /// the file cannot hold.
-fn check_legacy(bytes: &[u8]) -> Result<(), Unreadable> {
+fn check_legacy(bytes: &[u8]) -> Result<(), ImportFault> {
     if bytes.starts_with(b"# vtk DataFile Version 5") {
         return Err(
             "is a legacy VTK file of the version 5; save it as .vtu or in version 4.2".into(),
@@ -89,7 +89,7 @@ fn check_legacy(bytes: &[u8]) -> Result<(), Unreadable> {
     Ok(())
 }
 
-fn of_piece(piece: &UnstructuredGridPiece) -> Result<UnstructuredGrid, Unreadable> {
+fn of_piece(piece: &UnstructuredGridPiece) -> Result<UnstructuredGrid, ImportFault> {
     let points = numbers(&piece.points).ok_or("has points that are not numbers")?;
     let kinds = piece.cells.types.iter().map(|kind| *kind as u8);
     Ok(UnstructuredGrid {
@@ -118,7 +118,7 @@ fn numbers(buffer: &IOBuffer) -> Option<Vec<f64>> {
 }
 
 /// The nodes of each cell.
-fn cells(vertices: &VertexNumbers) -> Result<Vec<Vec<u64>>, Unreadable> {
+fn cells(vertices: &VertexNumbers) -> Result<Vec<Vec<u64>>, ImportFault> {
     let mut cells = Vec::new();
     match vertices {
         VertexNumbers::XML {

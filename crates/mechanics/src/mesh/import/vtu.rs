@@ -20,7 +20,7 @@ use super::unstructured::{CUT_OFF, UnstructuredGrid};
 
 mod decode;
 
-use super::raw::Unreadable;
+use super::raw::ImportFault;
 use decode::{Header, Numbers, decode_base64, inflate, width};
 
 /// Points and cells that are read at most.
@@ -43,7 +43,7 @@ impl DataArray {
         self.attributes.get(name).map_or("", String::as_str)
     }
 
-    fn components(&self) -> Result<usize, Unreadable> {
+    fn components(&self) -> Result<usize, ImportFault> {
         match self.attribute("NumberOfComponents") {
             "" => Ok(1),
             text => text.parse().map_err(|_| {
@@ -65,7 +65,7 @@ struct Layout {
 }
 
 /// Reads the bytes of a file.
-pub fn read(bytes: &[u8]) -> Result<UnstructuredGrid, Unreadable> {
+pub fn read(bytes: &[u8]) -> Result<UnstructuredGrid, ImportFault> {
     let (head, appended) = split_appended(bytes);
     let head = std::str::from_utf8(head).map_err(|_| "is not XML: its header is not text")?;
     let layout = Layout::of(head)?;
@@ -89,7 +89,7 @@ fn split_appended(bytes: &[u8]) -> (&[u8], &[u8]) {
     }
 }
 
-pub fn attributes(tag: &BytesStart) -> Result<Attributes, Unreadable> {
+pub fn attributes(tag: &BytesStart) -> Result<Attributes, ImportFault> {
     let mut all = Attributes::new();
     for attribute in tag.attributes().with_checks(false) {
         let attribute = attribute.map_err(|cause| format!("is not XML: {cause}"))?;
@@ -101,7 +101,7 @@ pub fn attributes(tag: &BytesStart) -> Result<Attributes, Unreadable> {
 }
 
 impl Layout {
-    fn of(text: &str) -> Result<Self, Unreadable> {
+    fn of(text: &str) -> Result<Self, ImportFault> {
         let mut reader = Reader::from_str(text);
         let mut layout = Self::default();
         let (mut part, mut open) = (String::new(), None::<DataArray>);
@@ -135,7 +135,12 @@ impl Layout {
         }
     }
 
-    fn enter(&mut self, name: &str, tag: &BytesStart, part: &mut String) -> Result<(), Unreadable> {
+    fn enter(
+        &mut self,
+        name: &str,
+        tag: &BytesStart,
+        part: &mut String,
+    ) -> Result<(), ImportFault> {
         match name {
             "VTKFile" => self.file = attributes(tag)?,
             "Piece" if self.piece.is_some() => {
@@ -153,7 +158,7 @@ impl Layout {
     }
 }
 
-fn encoded(tag: &BytesStart) -> Result<DataArray, Unreadable> {
+fn encoded(tag: &BytesStart) -> Result<DataArray, ImportFault> {
     Ok(DataArray {
         attributes: attributes(tag)?,
         text: String::new(),
@@ -173,7 +178,7 @@ struct XmlFile<'a> {
 }
 
 impl<'a> XmlFile<'a> {
-    fn new(layout: &'a Layout, appended: &'a [u8]) -> Result<Self, Unreadable> {
+    fn new(layout: &'a Layout, appended: &'a [u8]) -> Result<Self, ImportFault> {
         let file = |name: &str| layout.file.get(name).map_or("", String::as_str);
         if layout.file.is_empty() {
             return Err("cannot be read as VTK: it has no VTKFile".into());
@@ -192,7 +197,7 @@ impl<'a> XmlFile<'a> {
             }
         };
         let piece = layout.piece.as_ref().ok_or("has no piece")?;
-        let count = |name: &str| -> Result<usize, Unreadable> {
+        let count = |name: &str| -> Result<usize, ImportFault> {
             let number = piece.get(name).and_then(|text| text.trim().parse().ok());
             let number = number.ok_or_else(|| format!("has a piece without {name}"))?;
             match number {
@@ -219,7 +224,7 @@ impl<'a> XmlFile<'a> {
         })
     }
 
-    fn grid(&self) -> Result<UnstructuredGrid, Unreadable> {
+    fn grid(&self) -> Result<UnstructuredGrid, ImportFault> {
         let points = self.needed("Points", None)?;
         if points.components()? != 3 {
             return Err("has points without three coordinates".into());
@@ -248,7 +253,7 @@ impl<'a> XmlFile<'a> {
     }
 
     /// The array of a name in a part, or its only one.
-    fn needed(&self, part: &str, name: Option<&str>) -> Result<&'a DataArray, Unreadable> {
+    fn needed(&self, part: &str, name: Option<&str>) -> Result<&'a DataArray, ImportFault> {
         let mut arrays = self.layout.arrays.iter().filter(|(of, _)| of == part);
         let matching =
             arrays.find(|(_, array)| name.is_none_or(|name| array.attribute("Name") == name));
@@ -260,7 +265,7 @@ impl<'a> XmlFile<'a> {
     }
 
     /// The arrays of a part that hold numbers, with the names of their own.
-    fn arrays(&self, part: &str, tuples: usize) -> Result<Vec<(String, Vec<f64>)>, Unreadable> {
+    fn arrays(&self, part: &str, tuples: usize) -> Result<Vec<(String, Vec<f64>)>, ImportFault> {
         let of_part = self.layout.arrays.iter().filter(|(of, _)| of == part);
         let numbers = of_part.filter(|(_, array)| width(array.attribute("type")).is_some());
         let decode = |(_, array): &(String, DataArray)| {
@@ -278,7 +283,7 @@ impl<'a> XmlFile<'a> {
     }
 
     /// So many numbers of an array.
-    fn values(&self, array: &DataArray, count: usize) -> Result<Vec<f64>, Unreadable> {
+    fn values(&self, array: &DataArray, count: usize) -> Result<Vec<f64>, ImportFault> {
         let name = array.attribute("Name");
         let named = |reason: String| format!("has the array `{name}`, which {reason}");
         let kind = array.attribute("type");
@@ -303,7 +308,7 @@ impl<'a> XmlFile<'a> {
     }
 
     /// The bytes of an array, of which there must be so many.
-    fn bytes(&self, array: &DataArray, wanted: usize) -> Result<Vec<u8>, Unreadable> {
+    fn bytes(&self, array: &DataArray, wanted: usize) -> Result<Vec<u8>, ImportFault> {
         let stored = match array.attribute("format") {
             "binary" => decode_base64(array.text.as_bytes())?,
             "appended" => self.appended(array)?,
@@ -324,7 +329,7 @@ impl<'a> XmlFile<'a> {
     }
 
     /// The bytes of an appended array, with what stands behind them.
-    fn appended(&self, array: &DataArray) -> Result<Vec<u8>, Unreadable> {
+    fn appended(&self, array: &DataArray) -> Result<Vec<u8>, ImportFault> {
         let start = array.attribute("offset").parse().ok();
         let start = start.filter(|start: &usize| *start < self.appended.len());
         let start = start.ok_or("begins behind the end of the file")?;

@@ -2,7 +2,7 @@
 
 use std::io::Read;
 
-use super::super::raw::Unreadable;
+use super::super::raw::ImportFault;
 use crate::document::binary;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -41,7 +41,7 @@ pub struct Header<'a> {
 }
 
 impl Header<'_> {
-    pub fn next(&mut self) -> Result<usize, Unreadable> {
+    pub fn next(&mut self) -> Result<usize, ImportFault> {
         let (kind, width) = if self.numbers.wide_header {
             ("UInt64", 8)
         } else {
@@ -54,7 +54,7 @@ impl Header<'_> {
 }
 
 /// The data of compressed blocks, of which there must be so many bytes.
-pub fn inflate(mut header: Header, wanted: usize) -> Result<Vec<u8>, Unreadable> {
+pub fn inflate(mut header: Header, wanted: usize) -> Result<Vec<u8>, ImportFault> {
     let (blocks, size, last) = (header.next()?, header.next()?, header.next()?);
     let full = if last == 0 {
         blocks
@@ -66,7 +66,7 @@ pub fn inflate(mut header: Header, wanted: usize) -> Result<Vec<u8>, Unreadable>
     if total != Some(wanted) || blocks > wanted.max(1) {
         return Err(format!("does not have the {wanted} bytes that belong to it").into());
     }
-    let sizes: Result<Vec<usize>, Unreadable> = (0..blocks).map(|_| header.next()).collect();
+    let sizes: Result<Vec<usize>, ImportFault> = (0..blocks).map(|_| header.next()).collect();
     let (mut data, mut rest) = (Vec::new(), header.bytes);
     for size in sizes? {
         let (block, behind) = rest.split_at_checked(size).ok_or("is cut off")?;
@@ -88,7 +88,7 @@ pub fn inflate(mut header: Header, wanted: usize) -> Result<Vec<u8>, Unreadable>
 }
 
 /// Bytes from base64, in which white space may stand and several parts with their own padding may follow one another.
-pub fn decode_base64(text: &[u8]) -> Result<Vec<u8>, Unreadable> {
+pub fn decode_base64(text: &[u8]) -> Result<Vec<u8>, ImportFault> {
     // What follows appended data is XML again.
     let end = text.iter().position(|byte| *byte == b'<');
     let encoded = text[..end.unwrap_or(text.len())].iter().copied();
