@@ -27,7 +27,6 @@ pub(super) mod problem;
 mod read;
 pub(super) mod results;
 mod statement;
-mod work;
 
 pub use along::Along;
 pub(crate) use measured_curve::{check_extensometer, read_measured_curve};

@@ -1,4 +1,4 @@
-//! The convergence of the models, their multipliers, and their deviations along the path.
+//! The convergence of the models, their multipliers, and what runs along the path: deviations, stored and dissipated energy.
 
 use super::problem::Specimen;
 use super::results::models::Models;
@@ -6,8 +6,10 @@ use super::results::verdict::{Deviation, Measure};
 use crate::corrector::Multipliers;
 use crate::corrector::plate::{EQUILIBRIUM, FREE_EDGES, GRIPS};
 use crate::corrector::specimen::SUPPORTS;
+use crate::problem::Work;
 use crate::results::{Array, Axis, Block, Drawing, Line, LineChart, Stroke, Table, or_dash};
 use crate::studies::ModelKind;
+use crate::units::decimals;
 
 /// The deviations from the finite elements over the path, with a caption; `None` where there are none.
 pub fn deviations_chart(
@@ -179,4 +181,39 @@ fn multiplier_array(group: &Multipliers, size: usize) -> Option<Array> {
         values[*unknown] = *value;
     }
     Some(Array::vectors(name, values))
+}
+
+/// A part of the work on the material with its name.
+type Part = (&'static str, fn(Work) -> f64);
+
+const PARTS: [Part; 2] = [
+    ("stored", |work| work.stored),
+    ("dissipated", |work| work.dissipated),
+];
+
+/// A table of all models at all load factors; nothing where the material has no memory.
+pub fn work(specimen: &Specimen, models: &Models) -> Vec<Block> {
+    if !specimen.problem.laws().soften() {
+        return Vec::new();
+    }
+    let along = specimen.along;
+    let mut table = Table::of(specimen.factors.iter().enumerate())
+        .column(along.head(), |(_, factor)| along.value(**factor));
+    for (what, part) in PARTS {
+        for (kind, solution) in models.all() {
+            let head = format!("{what}, {} [mJ]", kind.style().name);
+            table = table.column(head, |(step, _)| {
+                let work = solution.works.get(*step).copied().flatten();
+                or_dash(work.map(part), |value| decimals(value, 4))
+            });
+        }
+    }
+    vec![
+        Block::heading("Stored and dissipated energy"),
+        table.block(),
+        Block::paragraph(
+            "The material softens at every point according to the largest load there so far (Mullins effect). The loads follow one another as the \
+             study lists them, and the largest load is updated at these only. Dissipated work is not recovered.",
+        ),
+    ]
 }

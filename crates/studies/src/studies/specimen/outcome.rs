@@ -7,11 +7,11 @@ use super::forces::Balance;
 use super::headline::headline;
 use super::measured_fields::MeasuredFields;
 use super::problem::Specimen;
-use super::results::corrected_fields::Start;
+use super::results::lattice::Start;
 use super::results::measured::Quantity;
 use super::results::models::Models;
 use super::results::verdict::{Deviation, Distance, Measure, checks, deviations};
-use super::{forces, history, statement, work};
+use super::{forces, history, statement};
 use crate::problem::Solution;
 use crate::results::{Block, Outcome, Step, Table, object, or_dash, pictures};
 use crate::studies::ModelKind;
@@ -73,7 +73,7 @@ fn blocks(
     blocks.extend(starts(specimen, models).map(Block::Paragraph));
     blocks.extend(pictures("Pictures", outcome));
     blocks.extend(forces::table(specimen, models, balances));
-    blocks.extend(work::blocks(specimen, models));
+    blocks.extend(history::work(specimen, models));
     if models.reference.reached() > 0 {
         blocks.push(Block::heading("The finite elements' own error"));
         blocks.push(Block::Paragraph(format!(

@@ -19,7 +19,6 @@ use crate::studies::sections::Tolerances;
 
 mod grids;
 mod outline;
-mod shape_words;
 
 pub use grids::{GridCorrection, GridElements, HALVINGS, PlateGrids};
 pub use outline::Outline;

@@ -8,12 +8,10 @@ use crate::studies::findings::{Examined, findings};
 use crate::studies::series::ModelSeries;
 use crate::studies::{ModelKind, OneModel, Progress};
 
-pub mod corrected_fields;
 pub mod end;
 pub mod lattice;
 pub mod measured;
 pub mod models;
-mod on_grids;
 pub mod reference;
 mod refine;
 mod rounds;

@@ -1,20 +1,20 @@
 //! Springs on the lattice of a specimen and their correction, each up to the end of its path.
 
-use super::corrected_fields::{Correction, Fields, Start};
 use super::end::{End, Run};
-use super::on_grids;
+use crate::corrector::climb::{Climb, Provenance};
 use crate::corrector::nested::{NestedCorrection, NestedMeshes};
+use crate::corrector::plate::KnownConditions;
 use crate::corrector::specimen::{correct, correct_without_multipliers};
-use crate::corrector::{CorrectorSettings, Multipliers, Solver};
+use crate::corrector::{CorrectorSettings, Multipliers, PlateCorrector, Solver};
 use crate::error::{Error, SolveFault};
 use crate::mass_spring::MassSpring;
 use crate::mesh::Mesh;
-use crate::problem::{Model, Solution};
+use crate::problem::{ClampedPlate, Model, Solution};
 use crate::results::models::{CORRECTED, MASS_SPRING};
 use crate::solve::vector::difference;
 use crate::solve::{Attendance, Loading, NewtonSettings, PathEnd, Stage, State};
 use crate::studies::ModelKind;
-use crate::studies::specimen::problem::{LARGE, NEWTON};
+use crate::studies::specimen::problem::{LARGE, NEWTON, PlateGrids};
 
 const CORRECTOR: CorrectorSettings = CorrectorSettings {
     tolerance: 1e-10,
@@ -22,6 +22,53 @@ const CORRECTOR: CorrectorSettings = CorrectorSettings {
     max_steps: 60,
     solver: Solver::Automatic,
 };
+
+/// Where the corrector began at a load factor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Start {
+    /// At springs on a coarser mesh.
+    Nested,
+    /// On grids of a plate, as its study says.
+    Grids,
+    /// The same where the springs have no field: ū is the affine stretch.
+    GridsAlone,
+    /// At the springs' field, with what the correction had changed at the load factor before.
+    Springs,
+    /// At the equilibrium of the elements, which Newton's method reached from rest in load steps; ū is the
+    /// springs' field.
+    LoadSteps,
+    /// The same, where the springs have no field: ū is that equilibrium itself, which needs no correction.
+    Alone,
+}
+
+/// How the corrected fields of a path were reached, at each load factor.
+#[derive(Default)]
+pub struct Correction {
+    /// Where the corrector began.
+    pub starts: Vec<Start>,
+    /// The multipliers, condition after condition; none where they were not computed.
+    pub multipliers: Vec<Vec<Multipliers>>,
+    /// How a climb came to each field; empty where none climbed.
+    pub climbs: Vec<Provenance>,
+    /// The discretisation errors in mm of those that began at springs on a coarser mesh.
+    pub discretisation_errors: Vec<f64>,
+}
+
+/// The corrected fields of a path, and how each was reached.
+#[derive(Default)]
+struct Fields {
+    states: Vec<State>,
+    correction: Correction,
+}
+
+impl Fields {
+    /// Adds the field at the next load factor.
+    fn push(&mut self, state: State, start: Start, multipliers: Vec<Multipliers>) {
+        self.states.push(state);
+        self.correction.starts.push(start);
+        self.correction.multipliers.push(multipliers);
+    }
+}
 
 /// Springs on the lattice, and the corrected field on the mesh of the coarsest finite elements.
 pub struct OnLattice {
@@ -98,7 +145,7 @@ impl OnLattice {
         let energy = specimen.corrected_energy(mesh);
         let model = specimen.on(mesh, &energy)?.named("corrector");
         let fields = match specimen.plate() {
-            Some((plate, grids)) => on_grids::correct(run, (&plate, grids), mesh, &uncorrected)?,
+            Some((plate, grids)) => correct_on_grids(run, (&plate, grids), mesh, &uncorrected)?,
             None => {
                 let mut fields = Fields::default();
                 for field in nested {
@@ -123,6 +170,56 @@ impl OnLattice {
             correction: fields.correction,
         })
     }
+}
+
+/// Corrects as many stretches as can be, on a mesh to whose nodes the springs' field is interpolated. Where the springs have no field
+/// the affine stretch takes its place, on which the multipliers and the start of the direct method depend.
+///
+/// # Errors
+/// Any but [`Error::Solve`], which is an end.
+fn correct_on_grids(
+    run: &mut Run,
+    (plate, grids): (&ClampedPlate, &PlateGrids),
+    mesh: &Mesh,
+    springs: &Solution,
+) -> Result<Fields, Error> {
+    let mut fields = Fields::default();
+    let settings = &grids.correction;
+    let mut corrector = PlateCorrector::new(plate, mesh, settings.scheme, settings.direct);
+    let mut climb = settings
+        .climb
+        .map(|climb| Climb::graded(plate, grids.cells, settings.scheme, settings.grading, climb));
+    let onto_mesh = settings
+        .is_graded()
+        .then(|| springs.mesh.interpolation_on(mesh));
+    for (step, stretch) in run.specimen.factors.iter().enumerate() {
+        let data = match (springs.displacement(step), &onto_mesh) {
+            (Some(field), Some(onto_mesh)) => onto_mesh.apply(field),
+            (Some(field), None) => field.to_vec(),
+            (None, _) => plate.affine(mesh, *stretch),
+        };
+        let corrected = match &mut climb {
+            Some(climb) => corrector.climb(climb, &data, *stretch),
+            None => corrector.correct(&data, *stretch, KnownConditions::ALL),
+        };
+        let field = match corrected {
+            Ok(field) => field,
+            Err(Error::Solve { fault, .. }) => {
+                run.ends.push(End::at(run.specimen, *stretch, fault));
+                break;
+            }
+            Err(other) => return Err(other),
+        };
+        run.report_solved("corrector", *stretch);
+        corrector = corrector.after(&field.state);
+        let start = match springs.displacement(step) {
+            Some(_) => Start::Grids,
+            None => Start::GridsAlone,
+        };
+        fields.push(field.state, start, field.multipliers);
+        fields.correction.climbs.extend(field.provenance);
+    }
+    Ok(fields)
 }
 
 /// The corrections on nested meshes, up to the last load factor that they reach; none where the study has no such meshes.
