@@ -10,7 +10,6 @@ mod connectivity;
 mod convergence;
 pub mod dissection;
 mod ending;
-mod equilibrium;
 mod grouped;
 mod iterative;
 mod journal;
@@ -32,12 +31,11 @@ pub use assembly::Assembly;
 pub use composed::{After, DeadForces, Sum};
 pub use connectivity::Connectivity;
 pub use convergence::{Convergence, NewtonSettings};
-pub use equilibrium::equilibrium;
 pub use iterative::{LinearSolver, WORTH_MULTIGRID};
 pub use journal::{Attendance, Journal, Milestone};
 pub use loading::{Loading, Stage, State};
 pub use newton::Newton;
-pub use path::{PathEnd, compliance, follow};
+pub use path::{PathEnd, compliance, equilibrium, follow};
 pub use pattern::SymmetricPattern;
 pub use potential::{
     Evaluated, Inadmissible, Local, Potential, Remembering, SkewCoupling, Take,

@@ -48,7 +48,7 @@ impl ClampedPlate {
         let model = model.expect("the sides of a plate are groups of its mesh");
         model
             .guessing(self.affine(mesh, 1.0))
-            .describing_ends(describe_end)
+            .describing_ends(Self::describe_end)
     }
 
     /// Marks the unknowns of `mesh` that the grips hold.
@@ -86,6 +86,15 @@ impl ClampedPlate {
         format!("{} % stretch", Self::percent(stretch))
     }
 
+    /// `50 % stretch (reached 43.2 %)`, for messages.
+    pub fn describe_end(end: &PathEnd) -> String {
+        format!(
+            "{} (reached {} %)",
+            Self::describe_step(end.factor),
+            Self::percent(end.reached())
+        )
+    }
+
     /// A ratio in percent, as short as it can be written.
     pub fn percent(ratio: f64) -> String {
         let text = format!("{:.4}", 100.0 * ratio);
@@ -114,13 +123,4 @@ impl Measures {
             energy: state.convergence.energy,
         }
     }
-}
-
-/// `50 % stretch (reached 43.2 %)`.
-fn describe_end(end: &PathEnd) -> String {
-    format!(
-        "{} (reached {} %)",
-        ClampedPlate::describe_step(end.factor),
-        ClampedPlate::percent(end.reached())
-    )
 }

@@ -1,6 +1,7 @@
 //! A potential in which some unknowns are tied to others.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use super::constraints::Tie;
 use crate::solve::{Connectivity, Evaluated, Local, Potential, SkewCoupling, Take};
@@ -46,8 +47,9 @@ impl<'a> TiedPotential<'a> {
             connectivity.push(unknowns);
             tied.insert(element, positions);
         }
+        let nodes = Arc::clone(potential.connectivity().nodes());
         Self {
-            connectivity: connectivity.with_positions_of(potential.connectivity()),
+            connectivity: connectivity.with_positions(nodes),
             potential,
             positions: tied,
             ties,

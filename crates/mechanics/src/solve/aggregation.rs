@@ -129,8 +129,8 @@ impl Hierarchy {
     }
 }
 
-/// Rounds a vector to single precision, whose range of exponents is small, after division by its largest entry, which
-/// is returned; `None` where that entry is zero or not finite.
+/// Rounds a vector to single precision, whose range of exponents is small, after division by its largest entry, which is returned; nothing is
+/// written where that entry is zero or not finite.
 pub fn single_precision<const N: usize>(r: &[[f64; N]], rounded: &mut [[f32; N]]) -> f64 {
     let sizes = r.iter().flatten().map(|r| r.abs());
     let most = sizes.fold(0.0, f64::max);

@@ -73,12 +73,6 @@ impl Connectivity {
         }
     }
 
-    /// Adds the positions of the nodes as far as `other` has them.
-    #[must_use]
-    pub fn with_positions_of(self, other: &Self) -> Self {
-        self.with_positions(Arc::clone(&other.nodes))
-    }
-
     /// The elements with memory that all copies share.
     ///
     /// # Panics

@@ -57,7 +57,7 @@ pub fn diagnose(
     if let Some(instability) = unstable(last).or_else(|| unstable(&u)) {
         return instability;
     }
-    if newton.tangent.has_skew_part() {
+    if !newton.tangent.skew.is_none() {
         // Modes of its symmetric part alone are not modes of the body.
         return fault;
     }

@@ -187,7 +187,8 @@ impl Newton {
             if self.shifts {
                 now.shifted = self.tangent.factorise(&mut stiffness)?;
             } else {
-                self.tangent.factorise_unshifted(&mut stiffness)?;
+                let factorised = self.tangent.factorise_braced(&mut stiffness);
+                factorised.map_err(|fault| fault.or(SolveFault::NotPositiveDefinite))?;
             }
             if now.shifted && self.indefinite.is_none() {
                 self.indefinite = Some(to.u.to_vec());

@@ -2,7 +2,6 @@
 
 use super::convergence::NewtonSettings;
 use super::ending::diagnose;
-use super::equilibrium::equilibrium;
 use super::journal::{Attendance, Journal, Milestone};
 use super::loading::{Loading, Stage, State};
 use super::newton::Newton;
@@ -112,6 +111,31 @@ pub fn follow(
         (attendance.reached)(factor);
     }
     Ok(states)
+}
+
+/// The equilibrium at a stage with the potential there, from a guess on which held unknowns are imposed.
+///
+/// # Errors
+/// As [`Newton::solve`].
+pub fn equilibrium(
+    loading: &dyn Loading,
+    potential: &dyn Potential,
+    stage: Stage<'_>,
+    newton: &mut Newton,
+    mut displacement: Vec<f64>,
+    settings: NewtonSettings,
+) -> Result<State, SolveFault> {
+    loading.impose(stage.factor, &mut displacement);
+    let mut residual = vec![0.0; displacement.len()];
+    let convergence = newton.solve(
+        potential,
+        &mut displacement,
+        &mut residual,
+        settings,
+        &|element| loading.describe(element),
+    )?;
+    loading.impose(stage.factor, &mut displacement);
+    Ok(stage.reached(displacement, residual, convergence))
 }
 
 /// The change of an equilibrium at load factor 1, without a history, by its transposed tangent under small forces on free

@@ -290,12 +290,6 @@ impl Tangent {
         }
     }
 
-    /// Factorises the stiffness as it is.
-    pub(super) fn factorise_unshifted(&mut self, stiffness: &mut [f64]) -> Result<(), SolveFault> {
-        let factorised = self.factorise_braced(stiffness);
-        factorised.map_err(|fault| fault.or(SolveFault::NotPositiveDefinite))
-    }
-
     /// Factorises the stiffness, shifted along its diagonal where it is not positive definite; returns whether it had to be shifted.
     pub(super) fn factorise(&mut self, stiffness: &mut [f64]) -> Result<bool, SolveFault> {
         let mean = self.assembly.pattern().mean_diagonal(stiffness);
@@ -320,11 +314,6 @@ impl Tangent {
             outcome = self.analysed()?.factorise(stiffness);
         }
         Ok(shift > 0.0)
-    }
-
-    /// Whether the tangent taken last was not symmetric.
-    pub(super) fn has_skew_part(&self) -> bool {
-        !self.skew.is_none()
     }
 
     /// −K⁻¹ r at the free unknowns.

@@ -82,11 +82,7 @@ impl Along {
     pub fn describe_end(self, end: &PathEnd) -> String {
         match self {
             Self::LoadFactor => end.describe(),
-            Self::Stretch => format!(
-                "{} (reached {} %)",
-                self.describe(end.factor),
-                ClampedPlate::percent(end.reached())
-            ),
+            Self::Stretch => ClampedPlate::describe_end(end),
         }
     }
 }
