@@ -13,7 +13,6 @@ mod grid;
 mod import;
 mod interpolation;
 mod locate;
-mod neighbours;
 mod nodal_field;
 mod outline;
 mod parts;

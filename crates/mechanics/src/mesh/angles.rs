@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::f64::consts::PI;
 
 use super::cells::Mesh;
+use super::geometry::turn;
 
 /// An angle of the sheet in rad from which on a corner is re-entrant; a smaller one is between the chords of a curve.
 pub const REENTRANT: f64 = 210.0 * PI / 180.0;
@@ -43,9 +44,7 @@ impl Mesh {
 fn angle(before: [f64; 2], after: [f64; 2]) -> f64 {
     /// A turn to the left by nearly π would leave no sheet.
     const LARGEST_TURN: f64 = 0.9999 * PI;
-    let across = before[0] * after[1] - before[1] * after[0];
-    let along = before[0] * after[0] + before[1] * after[1];
-    match across.atan2(along) {
+    match turn(before, after) {
         turn if turn > LARGEST_TURN => 2.0 * PI,
         turn => PI - turn,
     }

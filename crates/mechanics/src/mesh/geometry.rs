@@ -116,6 +116,11 @@ pub fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
     (b[0] - a[0]).hypot(b[1] - a[1])
 }
 
+/// The angle in rad by which a vector must turn to point along another one, from −π to π.
+pub fn turn(from: [f64; 2], to: [f64; 2]) -> f64 {
+    determinant(&[from, to]).atan2(from[0] * to[0] + from[1] * to[1])
+}
+
 /// The determinant of a 2 × 2 matrix, by rows.
 pub fn determinant(map: &[[f64; 2]; 2]) -> f64 {
     map[0][0] * map[1][1] - map[0][1] * map[1][0]

@@ -16,7 +16,7 @@
 use std::collections::BTreeMap;
 
 use super::cells::Mesh;
-use super::geometry::determinant;
+use super::geometry::turn;
 use crate::error::Diagnostic;
 
 /// A turn between straight edges that may belong to a curve, in rad: up to an octagon's.
@@ -77,7 +77,7 @@ impl Piece<'_> {
 
     /// The turn along the edge itself.
     fn turning(&self) -> f64 {
-        angle(self.tangents[0], self.tangents[1])
+        turn(self.tangents[0], self.tangents[1])
     }
 
     /// The turn at each end if the edge were that of a circle.
@@ -119,11 +119,6 @@ impl Piece<'_> {
         };
         -0.5 * self.length() * mean
     }
-}
-
-/// The angle from one direction to another.
-fn angle(from: [f64; 2], to: [f64; 2]) -> f64 {
-    determinant(&[from, to]).atan2(from[0] * to[0] + from[1] * to[1])
 }
 
 impl Mesh {
@@ -193,7 +188,7 @@ impl Mesh {
         let kinks: Vec<Option<f64>> = pieces
             .iter()
             .zip(&next)
-            .map(|(piece, next)| Some(angle(piece.tangents[1], pieces[(*next)?].tangents[0])))
+            .map(|(piece, next)| Some(turn(piece.tangents[1], pieces[(*next)?].tangents[0])))
             .collect();
         let mut before = vec![None; pieces.len()];
         for (piece, next) in next.iter().enumerate() {

@@ -3,9 +3,8 @@
 //! A position on them belongs to cells of both sides, whose displacements differ. The node of another mesh is found from the side of its own cells:
 //! from the centre of one of them, cell by cell without crossing the boundary, to the node.
 
-use super::cells::Mesh;
+use super::cells::{Mesh, Neighbours};
 use super::interpolation::CellPoint;
-use super::neighbours::Neighbours;
 
 /// A node of the boundary this far inside or outside of a cell that is not its own, in natural coordinates, lies on it.
 const ON_CELL: f64 = 0.02;

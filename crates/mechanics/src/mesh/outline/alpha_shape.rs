@@ -4,9 +4,8 @@ use std::collections::{BTreeMap, HashMap};
 
 use super::fault::OutlineFault;
 use crate::mesh::cell_shape::CellShape;
-use crate::mesh::cells::Mesh;
+use crate::mesh::cells::{Mesh, Neighbours};
 use crate::mesh::geometry::{distance, polygon_area};
-use crate::mesh::neighbours::Neighbours;
 use crate::mesh::parts::Parts;
 use crate::mesh::triangulate::delaunay;
 use crate::statistics::median;

@@ -1,7 +1,7 @@
 //! Corners of closed lines, by their turn over a part of the line instead of in a point: steps of one cell are no corners, and rounded
 //! corners are.
 
-use crate::mesh::geometry::{distance, polygon_area};
+use crate::mesh::geometry::{self, distance, polygon_area};
 
 /// Turn of a line, in rad, from which on a point is a corner: 40°.
 pub const CORNER: f64 = 40.0 * std::f64::consts::PI / 180.0;
@@ -41,7 +41,5 @@ fn turn(line: &[[f64; 2]], index: usize, reach: f64) -> f64 {
         [at[0] - from[0], at[1] - from[1]],
         [to[0] - at[0], to[1] - at[1]],
     );
-    (a[0] * b[1] - a[1] * b[0])
-        .atan2(a[0] * b[0] + a[1] * b[1])
-        .abs()
+    geometry::turn(a, b).abs()
 }
