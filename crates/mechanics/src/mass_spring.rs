@@ -26,7 +26,7 @@ use std::sync::Arc;
 use crate::error::Error;
 use crate::material::law::HyperelasticLaw;
 use crate::material::stability::in_plane_poisson_ratio;
-use crate::mesh::{CellShape, Mesh};
+use crate::mesh::{CellShape, Mesh, decimals_for};
 use crate::problem::{ClampedPlate, Model, SheetLaws};
 use crate::solve::{NewtonSettings, Potential, Remembering, State};
 
@@ -237,8 +237,12 @@ impl MassSpring {
         let Some(spring) = self.springs.get(element) else {
             return self.mesh.describe_cell(element - self.springs.len());
         };
-        let [[x, y], [to_x, to_y]] = spring.nodes.map(|node| self.mesh.nodes[node]);
-        format!("the spring from ({x:.1}, {y:.1}) to ({to_x:.1}, {to_y:.1}) mm")
+        let decimals = decimals_for(0.1 * self.mesh.diagonal());
+        let [from, to] = spring.nodes.map(|node| {
+            let [x, y] = self.mesh.nodes[node];
+            format!("({x:.decimals$}, {y:.decimals$})")
+        });
+        format!("the spring from {from} to {to} mm")
     }
 
     /// Stretch and force of every spring of a lattice with a history, which is empty for a lattice that was never loaded.

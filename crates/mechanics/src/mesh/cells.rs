@@ -270,8 +270,9 @@ impl Mesh {
     /// `node 12 (35.0, 7.3) mm along x`, for messages.
     pub fn describe_unknown(&self, unknown: usize) -> String {
         let [x, y] = self.nodes[unknown / 2];
-        let axis = ["x", "y"][unknown % 2];
-        format!("node {} ({x:.1}, {y:.1}) mm along {axis}", unknown / 2)
+        let (node, axis) = (unknown / 2, ["x", "y"][unknown % 2]);
+        let decimals = decimals_for(0.1 * self.diagonal());
+        format!("node {node} ({x:.decimals$}, {y:.decimals$}) mm along {axis}")
     }
 
     /// `cell 80 near (150.0, 0.0) mm`, for messages.

@@ -148,9 +148,7 @@ impl Shape {
                 size, arm_width, ..
             } => (size[0] + size[1]) / arm_width,
             // Around the hole there are about twice as many as in the strip.
-            Self::StripWithHole { size, .. } => {
-                2.0 + size[0].max(size[1]) / size[0].min(size[1]).min(size[1])
-            }
+            Self::StripWithHole { size, .. } => 2.0 + size[0].max(size[1]) / size[0].min(size[1]),
             Self::Strip { size } | Self::NotchedStrip { size, .. } | Self::DogBone { size, .. } => {
                 lengths(size[0], &|x| self.half_width(x))
             }

@@ -147,11 +147,13 @@ impl Misfit {
     /// What to change.
     pub fn remedy(&self) -> String {
         let unit = if self.measure == "angle" { "deg" } else { "mm" };
-        // Three decimals on the safe side.
+        // Three decimals on the safe side, more for small specimens.
+        let decimals = (2.0 - self.limit.abs().log10().floor()).clamp(3.0, 12.0);
+        let scale = 10_f64.powi(decimals as i32);
         let limit = if self.limit < 0.0 {
-            (1e3 * -self.limit).ceil() / 1e3
+            (scale * -self.limit).ceil() / scale
         } else {
-            (1e3 * self.limit).floor() / 1e3
+            (scale * self.limit).floor() / scale
         };
         let relation = match (self.limit < 0.0, limit > 0.0) {
             (true, _) => "more",

@@ -178,6 +178,11 @@ fn measures_that_do_not_fit_are_told() {
         shoulder: 8.0,
     };
     assert!(fault(shoulder).remedy().contains("more than \"13 mm\""));
+    let small = Shape::StripWithHole {
+        size: [1e-3; 2],
+        radius: 1e-3,
+    };
+    assert!(fault(small).remedy().contains("take less than"));
 }
 
 /// Steep arcs on the coarsest meshes, whose quadratic edges turn far.
