@@ -190,16 +190,10 @@ fn far_away(mesh: &Mesh, point: [f64; 2]) -> (usize, [f64; 2]) {
     let shape = mesh.shape(cell);
     let start = shape.centre();
     let from = mesh.position(cell, start);
-    let (gradients, _) = mesh.gradients(cell, start);
-    // ∂ξ/∂X = Σ ξₐ ∂Nₐ/∂X over the nodes of the cell.
-    let nodes = || shape.natural_nodes().iter().zip(&gradients);
+    let (slopes, _) = mesh.inverse_map(cell, &shape.derivatives(start));
     let local = [0, 1].map(|axis| {
-        let slope = |along: usize| {
-            nodes()
-                .map(|(position, g)| position[axis] * g[along])
-                .sum::<f64>()
-        };
-        start[axis] + slope(0) * (point[0] - from[0]) + slope(1) * (point[1] - from[1])
+        let [x, y] = slopes[axis];
+        start[axis] + x * (point[0] - from[0]) + y * (point[1] - from[1])
     });
     (cell, local)
 }

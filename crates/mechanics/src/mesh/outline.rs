@@ -20,9 +20,9 @@ use std::collections::{BTreeMap, HashMap};
 
 use super::cell_shape::CellShape;
 use super::cells::Mesh;
-use super::geometry::{check_size, distance, polygon_area};
+use super::geometry::{self, check_size, distance, polygon_area};
 use super::triangulate::fill;
-use crate::statistics::{extremes, median, nearest};
+use crate::statistics::{median, nearest};
 use crate::units::SIZES;
 
 mod alpha_shape;
@@ -248,10 +248,7 @@ impl Outline {
 
     /// Length along x and along y in mm.
     pub fn extents(&self) -> [f64; 2] {
-        [0, 1].map(|axis| {
-            let [low, high] = extremes(self.outer.iter().map(|point| point[axis]));
-            high - low
-        })
+        geometry::sides(self.outer.iter().copied())
     }
 
     /// A mesh of cells of about the size `size` in mm (the length of their edges); `shape` is their kind, of three,

@@ -12,22 +12,18 @@ impl Mesh {
     /// The mesh with nodes at the corners alone.
     #[must_use]
     pub fn linear(&self) -> Self {
-        let cells = (0..self.cell_count()).map(|cell| {
-            let shape = self.shape(cell);
-            (shape.linear(), self.corners(cell).to_vec())
-        });
         let mut names = vec![usize::MAX; self.nodes.len()];
         let mut nodes = Vec::new();
-        let cells: Vec<_> = cells
-            .map(|(shape, corners)| {
-                let corners = corners.into_iter().map(|node| {
-                    if names[node] == usize::MAX {
-                        names[node] = nodes.len();
-                        nodes.push(self.nodes[node]);
+        let cells: Vec<_> = (0..self.cell_count())
+            .map(|cell| {
+                let corners = self.corners(cell).iter().map(|node| {
+                    if names[*node] == usize::MAX {
+                        names[*node] = nodes.len();
+                        nodes.push(self.nodes[*node]);
                     }
-                    names[node]
+                    names[*node]
                 });
-                (shape, corners.collect())
+                (self.shape(cell).linear(), corners.collect())
             })
             .collect();
         let mut mesh = Self::new(nodes, cells);

@@ -7,8 +7,7 @@ use super::corner_forces::{Hold, Part, reaction_parts};
 use super::groups::{named, refused};
 use super::rigid_motion::RigidMotion;
 use crate::error::Diagnostic;
-use crate::mesh::{Group, Mesh};
-use crate::statistics::extremes;
+use crate::mesh::{Group, Mesh, geometry};
 
 /// Load factors at which motions are compared; two different motions, a turn and a line, agree at two of them at most.
 pub const FACTORS: [f64; 3] = [0.3, 0.7, 1.0];
@@ -369,10 +368,7 @@ fn normal(mesh: &Mesh, group: &Group) -> Result<[f64; 2], SupportMisfit> {
     /// Distance from the line relative to its length.
     const STRAIGHT: f64 = 1e-9;
     let positions = || group.nodes.iter().map(|node| mesh.nodes[*node]);
-    let extents = [0, 1].map(|axis| {
-        let [low, high] = extremes(positions().map(|position| position[axis]));
-        high - low
-    });
+    let extents = geometry::sides(positions());
     if extents == [0.0; 2] {
         return Err(SupportMisfit::NoLine);
     }

@@ -74,29 +74,23 @@ impl<'a> Model<'a> {
 
     /// Sets the name.
     #[must_use]
-    pub fn named(self, name: impl Into<String>) -> Self {
-        Self {
-            name: name.into(),
-            ..self
-        }
+    pub fn named(mut self, name: impl Into<String>) -> Self {
+        self.name = name.into();
+        self
     }
 
     /// Sets the names of the elements of an energy whose elements are not the cells.
     #[must_use]
-    pub fn describing(self, describe: impl Fn(usize) -> String + Sync + 'a) -> Self {
-        Self {
-            describe: Box::new(describe),
-            ..self
-        }
+    pub fn describing(mut self, describe: impl Fn(usize) -> String + Sync + 'a) -> Self {
+        self.describe = Box::new(describe);
+        self
     }
 
     /// Takes as first guess the state before, scaled with the load factor; at first, a multiple of a field that is given at load factor 1.
     #[must_use]
-    pub fn guessing(self, field: Vec<f64>) -> Self {
-        Self {
-            guess: Some(field),
-            ..self
-        }
+    pub fn guessing(mut self, field: Vec<f64>) -> Self {
+        self.guess = Some(field);
+        self
     }
 
     /// Takes first guesses, where they are known, from equilibria u of the same problem on another mesh, such as a coarser one:
@@ -108,34 +102,28 @@ impl<'a> Model<'a> {
     /// I interpolates onto this mesh, v is its own equilibrium at the load factor s before. Where such a guess leads to no
     /// equilibrium, as may happen with cells that keep their volume, the path goes on in shorter steps without these guesses.
     #[must_use]
-    pub fn near(self, mesh: &Mesh, states: &[State]) -> Self {
+    pub fn near(mut self, mesh: &Mesh, states: &[State]) -> Self {
         let interpolation = mesh.interpolation_on(self.mesh);
         let near = states.iter().map(|state| {
             let field = interpolation.apply(&state.displacement);
             (state.factor, field)
         });
-        Self {
-            near: near.collect(),
-            ..self
-        }
+        self.near = near.collect();
+        self
     }
 
     /// Sets the linear solver.
     #[must_use]
-    pub fn solved_by(self, linear_solver: LinearSolver) -> Self {
-        Self {
-            linear_solver,
-            ..self
-        }
+    pub fn solved_by(mut self, linear_solver: LinearSolver) -> Self {
+        self.linear_solver = linear_solver;
+        self
     }
 
     /// Sets another name for the load factor in messages.
     #[must_use]
-    pub(super) fn describing_ends(self, describe_end: fn(&PathEnd) -> String) -> Self {
-        Self {
-            describe_end,
-            ..self
-        }
+    pub(super) fn describing_ends(mut self, describe_end: fn(&PathEnd) -> String) -> Self {
+        self.describe_end = describe_end;
+        self
     }
 
     /// Imposes a displacement field in mm, complete at load factor 1, on the nodes of a group.

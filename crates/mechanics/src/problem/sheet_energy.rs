@@ -103,10 +103,8 @@ impl SheetEnergy {
         self.table_of.shrink_to_fit();
         self.points.shrink_to_fit();
         self.point_starts.shrink_to_fit();
-        Self {
-            connectivity: self.connectivity.with_positions(nodes).shared(),
-            ..self
-        }
+        self.connectivity = self.connectivity.with_positions(nodes).shared();
+        self
     }
 
     /// The energy of the same cells with another law of those that belong to no region.

@@ -66,11 +66,9 @@ impl Connectivity {
 
     /// Adds the positions of the nodes: large systems are eliminated in an order by positions.
     #[must_use]
-    pub fn with_positions(self, nodes: impl Into<Arc<[[f64; 2]]>>) -> Self {
-        Self {
-            nodes: nodes.into(),
-            ..self
-        }
+    pub fn with_positions(mut self, nodes: impl Into<Arc<[[f64; 2]]>>) -> Self {
+        self.nodes = nodes.into();
+        self
     }
 
     /// The elements with memory that all copies share.
@@ -82,11 +80,9 @@ impl Connectivity {
         assert_eq!(self.common.count(), 0, "shared before");
         self.added.unknowns.shrink_to_fit();
         self.added.starts.shrink_to_fit();
-        Self {
-            common: Arc::new(self.added),
-            added: Elements::none(),
-            ..self
-        }
+        self.common = Arc::new(self.added);
+        self.added = Elements::none();
+        self
     }
 
     /// Reserves memory for the elements of another list.

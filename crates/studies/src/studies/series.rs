@@ -179,15 +179,10 @@ fn gauge(outline: &Outline, mesh: &Mesh) -> Option<Gauge> {
         Outline::Grid(grids) => Shape::Strip { size: grids.size },
         Outline::File { .. } => return None,
     };
-    match shape {
-        Shape::Strip { size } => {
-            let description = "the middle half of the length";
-            Some(Gauge::middle_half(mesh, size[0], description))
-        }
-        Shape::DogBone { narrow, .. } => {
-            let description = "the middle half of the narrow part";
-            Some(Gauge::middle_half(mesh, narrow[0], description))
-        }
-        _ => None,
-    }
+    let (length, description) = match shape {
+        Shape::Strip { size } => (size[0], "the middle half of the length"),
+        Shape::DogBone { narrow, .. } => (narrow[0], "the middle half of the narrow part"),
+        _ => return None,
+    };
+    Some(Gauge::middle_half(mesh, length, description))
 }

@@ -8,8 +8,7 @@
 
 use super::corners::{CORNER, corners};
 use super::polygon::{distance, turn_between};
-use crate::mesh::geometry::{convex_hull, distance as length};
-use crate::statistics::extremes;
+use crate::mesh::geometry::{self, convex_hull, distance as length};
 
 /// Sides reach along the specimen by this share of its extent at least; a corner that is cut off is no side.
 const LEAST: f64 = 0.2;
@@ -39,12 +38,8 @@ pub fn sides(line: &[[f64; 2]]) -> Vec<(Option<&'static str>, Edge)> {
         (0..edges.len()).map(|edge| vec![edge]).collect(),
     ];
     let has_all = |chains: &&Vec<Vec<usize>>| has_four_sides(&edges, chains);
-    let extents = [0, 1].map(|axis| extremes(line.iter().map(|point| point[axis])));
-    let rough = ROUGH
-        * extents
-            .map(|[low, high]| high - low)
-            .into_iter()
-            .fold(0.0, f64::max);
+    let extents = geometry::sides(line.iter().copied());
+    let rough = ROUGH * extents[0].max(extents[1]);
     let mut named = Vec::new();
     for chain in ways.iter().find(has_all).unwrap_or(&ways[0]) {
         let side = facing(&edges, chain);
@@ -138,10 +133,8 @@ fn chains(begins_at_corner: &[bool], closed: bool) -> Vec<Vec<usize>> {
 
 /// Whether chains of a hull's edges are its left, right, lower and upper side.
 fn has_four_sides(edges: &[Edge], chains: &[Vec<usize>]) -> bool {
-    let extent = |axis: usize, edges: &mut dyn Iterator<Item = Edge>| {
-        let [low, high] = extremes(edges.flatten().map(|point| point[axis]));
-        high - low
-    };
+    let extent =
+        |axis: usize, edges: &mut dyn Iterator<Item = Edge>| geometry::sides(edges.flatten())[axis];
     let reaches = |side: &str, axis: usize| {
         let facing_edges = chains.iter().filter(|chain| facing(edges, chain) == side);
         let mut facing_edges = facing_edges.flatten().map(|edge| edges[*edge]);

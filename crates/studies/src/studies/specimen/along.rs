@@ -63,18 +63,12 @@ impl Along {
 
     /// `load factors 0.5, 1` or `50 %, 100 % stretch`.
     pub fn list(self, factors: impl IntoIterator<Item = f64>) -> String {
-        let factors = factors.into_iter();
+        let all = factors.into_iter().map(|factor| self.value(factor));
+        let all: Vec<String> = all.collect();
+        let several = if all.len() == 1 { "" } else { "s" };
         match self {
-            Self::LoadFactor => {
-                let all: Vec<String> = factors.map(|factor| factor.to_string()).collect();
-                let several = if all.len() == 1 { "" } else { "s" };
-                format!("load factor{several} {}", all.join(", "))
-            }
-            Self::Stretch => {
-                let percent = |factor: f64| format!("{} %", ClampedPlate::percent(factor));
-                let all: Vec<String> = factors.map(percent).collect();
-                format!("{} stretch", all.join(", "))
-            }
+            Self::LoadFactor => format!("load factor{several} {}", all.join(", ")),
+            Self::Stretch => format!("{} % stretch", all.join(" %, ")),
         }
     }
 
