@@ -39,7 +39,7 @@ pub fn write(model: &Model) -> String {
     boundary(model, &columns, &mut curves, &mut file);
     loads(model, &columns, &mut file);
     steps(model, &mut file);
-    curves.write(&mut file);
+    curves.write(model, &mut file);
     file.open("Output", &[]);
     file.open("plotfile", &[("type", "febio")]);
     file.empty("var", &[("type", "displacement")]);
@@ -302,13 +302,13 @@ fn loads(model: &Model, columns: &Columns, file: &mut Xml) {
     file.close("Loads");
 }
 
-/// One step for each load factor; the time is the load factor.
+/// One step for each load factor; the time is the load factor without its sign.
 fn steps(model: &Model, file: &mut Xml) {
     file.open("Step", &[]);
     let mut before = 0.0;
     for (index, factor) in model.given.factors.iter().enumerate() {
         let id = (index + 1).to_string();
-        let size = (factor - before) / f64::from(TIME_STEPS);
+        let size = (factor - before).abs() / f64::from(TIME_STEPS);
         file.open(
             "step",
             &[("id", &id), ("name", &format!("load factor {factor}"))],

@@ -26,7 +26,7 @@ pub struct Export<'a> {
     pub regions: &'a [(String, Card)],
     /// The finite elements.
     pub mesh: &'a Mesh,
-    /// Load factors, ascending.
+    /// Load factors, in the order in which they are reached.
     pub factors: &'a [f64],
     /// Bulk modulus over the initial shear modulus, for codes that know no incompressible sheet.
     pub bulk_ratio: f64,

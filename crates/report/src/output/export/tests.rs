@@ -193,6 +193,27 @@ fn what_grows_with_the_load_factor_goes_out_in_one_step_to_calculix() {
     }
 }
 
+/// FEBio's time grows, whatever the sign of the load factors.
+#[test]
+fn a_compression_takes_time_too() {
+    let card = Card::load("neo-hooke", Path::new(".")).unwrap();
+    let mut problem = problem(&card);
+    problem.supports[1].1 = Support::Displacement([Some(4.0), Some(0.0)]);
+    let export = Export {
+        title: "strip",
+        problem: &problem,
+        card: &card,
+        regions: &[],
+        mesh: &two_cells(),
+        factors: &[-0.05, -0.1],
+        bulk_ratio: 1000.0,
+    };
+    let text = export.input_file(Code::FeBio).unwrap().text;
+    assert_eq!(text.matches("<step_size>0.005</step_size>").count(), 2);
+    assert!(text.contains("<pt>1,-1</pt>"), "{text}");
+    assert!(!text.contains("<dtmax>-"), "{text}");
+}
+
 /// Codes that take displacements along straight lines take a large turn in several steps, whose ends lie on the arc.
 #[test]
 fn turns_go_out_in_steps() {

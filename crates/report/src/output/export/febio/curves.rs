@@ -16,23 +16,25 @@ impl Curves {
     pub fn turn(&mut self, model: &Model, held: &Constraint, node: usize) -> usize {
         let position = model.given.mesh.nodes[node];
         let mut points = vec![[0.0, 0.0]];
+        let mut before = 0.0;
         for factor in model.given.factors {
-            let before = points[points.len() - 1][0];
             for i in 1..=TURN_POINTS {
-                let time = match i {
+                let at = match i {
                     TURN_POINTS => *factor,
                     _ => before + (factor - before) * f64::from(i) / f64::from(TURN_POINTS),
                 };
-                points.push([time, held.at(position, time)]);
+                points.push([f64::abs(at), held.at(position, at)]);
             }
+            before = *factor;
         }
         self.0.push(points);
         self.0.len() + 1
     }
 
-    pub fn write(self, file: &mut Xml) {
+    pub fn write(self, model: &Model, file: &mut Xml) {
         file.open("LoadData", &[]);
-        let factor = vec![[0.0, 0.0], [1.0, 1.0]];
+        // Load factors have one sign, and grow where nothing softens.
+        let factor = vec![[0.0, 0.0], [1.0, model.given.factors[0].signum()]];
         for (index, points) in std::iter::once(factor).chain(self.0).enumerate() {
             let id = (index + 1).to_string();
             file.open(
