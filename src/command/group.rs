@@ -62,6 +62,10 @@ pub fn group(arguments: GroupArguments) -> Outcome {
         let message = format!("--names has {} for {groups} groups", arguments.names.len());
         return Err(Error::input(message, "such as --names control,treated"));
     }
+    if groups == 2 && arguments.names[0] == arguments.names[1] {
+        let message = format!("both groups have the name `{}`", arguments.names[0]);
+        return Err(Error::input(message, "such as --names control,treated"));
+    }
     let settings = FitSettings {
         weighting: Weighting::Absolute,
         bounds: arguments.parameters.bounds()?,
@@ -70,6 +74,7 @@ pub fn group(arguments: GroupArguments) -> Outcome {
     let reading = arguments.reading.reading()?;
     let files = [&arguments.data[..], &arguments.against[..]].concat();
     let mut tests = read_tests(&files, &reading)?;
+    Group::check_alike(&tests)?;
     let others = tests.split_off(arguments.data.len());
     let fitted = |tests: &[TestData]| Group::new(arguments.law, tests, &settings);
     let mut groups = vec![fitted(&tests)?];

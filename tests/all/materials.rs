@@ -259,6 +259,7 @@ fn groups_of_specimens_are_averaged_and_compared() {
         write(&format!("{number}.csv"), "uniaxial", c10);
     }
     write("planar.csv", "planar", 0.1);
+    write("planar-2.csv", "planar", 0.12);
     write("copy.csv", "uniaxial", 0.1);
     let group = |files: &[&str]| {
         let more = [
@@ -305,6 +306,10 @@ fn groups_of_specimens_are_averaged_and_compared() {
     .code(0);
     for (files, message) in [
         (&["0.csv", "planar.csv"][..], "a test of another kind"),
+        (
+            &["0.csv", "1.csv", "--against", "planar.csv", "planar-2.csv"],
+            "a test of another kind",
+        ),
         (
             &["0.csv", "1.csv", "--against", "2.csv"],
             "2 values required",

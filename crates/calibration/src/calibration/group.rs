@@ -12,7 +12,7 @@ use super::nearest::{check_measures, nearest};
 use super::settings::FitSettings;
 use crate::error::Error;
 use crate::material::registry::Law;
-use crate::statistics::{RandomEffects, normal_reach};
+use crate::statistics::{RandomEffects, farthest, normal_reach};
 
 /// A law fitted to every specimen of a group.
 #[derive(Debug)]
@@ -41,29 +41,15 @@ impl Group {
     /// Fits a law to the test of each specimen.
     ///
     /// # Errors
-    /// [`Error::Input`] for fewer than two specimens or tests of different kinds; as [`fit`] for each.
+    /// [`Error::Input`] for fewer than two specimens; those of [`Group::check_alike`]; as [`fit`] for each.
     pub fn new(
         law: &'static Law,
         tests: &[TestData],
         settings: &FitSettings,
     ) -> Result<Self, Error> {
-        check_measures(tests)?;
-        let first = &tests[0];
-        if let Some(other) = tests.iter().find(|test| test.test != first.test) {
-            let message = format!(
-                "{} is a test of another kind than {}: {} and {}",
-                other.name,
-                first.name,
-                other.test.name(),
-                first.test.name()
-            );
-            return Err(Error::input(
-                message,
-                "compare specimens by tests of one kind",
-            ));
-        }
+        Self::check_alike(tests)?;
         if tests.len() < 2 {
-            let message = format!("{} alone is no group", first.name);
+            let message = format!("{} alone is no group", tests[0].name);
             let hint = "how much specimens differ takes two at least, each in a file of its own";
             return Err(Error::input(message, hint));
         }
@@ -80,11 +66,37 @@ impl Group {
         })
     }
 
-    /// The largest strains along both axes that all specimens reached.
+    /// Refuses tests whose stresses cannot be compared, of one group or of two.
+    ///
+    /// # Errors
+    /// [`Error::Input`] with two tests of different stress measures, of different kinds, or one pulled and one pressed.
+    pub fn check_alike(tests: &[TestData]) -> Result<(), Error> {
+        check_measures(tests)?;
+        let kind = |test: &TestData| {
+            let is_pressed = farthest_strain(test, 0) < 0.0;
+            let pressed = if is_pressed { " in compression" } else { "" };
+            format!("{}{pressed}", test.test.name())
+        };
+        let first = &tests[0];
+        let Some(other) = tests.iter().find(|test| kind(test) != kind(first)) else {
+            return Ok(());
+        };
+        let message = format!(
+            "{} is a test of another kind than {}: {} and {}",
+            other.name,
+            first.name,
+            kind(other),
+            kind(first)
+        );
+        let hint = "compare specimens by tests of one kind";
+        Err(Error::input(message, hint))
+    }
+
+    /// The strains along both axes, farthest from rest, that all specimens reached.
     fn reached(&self) -> [f64; 2] {
         [0, 1].map(|axis| {
-            let reached = self.tests.iter().map(|test| test.reached(axis));
-            reached.fold(f64::INFINITY, f64::min)
+            let reached = self.tests.iter().map(|test| farthest_strain(test, axis));
+            reached.reduce(nearer).unwrap_or_default()
         })
     }
 
@@ -120,7 +132,7 @@ impl Group {
         let mut reached = self.reached();
         if let Some(other) = other {
             let of_other = other.reached();
-            reached = [0, 1].map(|axis| reached[axis].min(of_other[axis]));
+            reached = [0, 1].map(|axis| nearer(reached[axis], of_other[axis]));
         }
         let positions = Self::positions(reached, self.tests[0].test);
         let of_fit = |(fit, test): (&Fit, &TestData)| -> Vec<[f64; 2]> {
@@ -188,11 +200,22 @@ impl Group {
     }
 }
 
+/// The strain along an axis that is farthest from rest.
+fn farthest_strain(test: &TestData, axis: usize) -> f64 {
+    farthest(test.observations.iter().map(|one| one.strains[axis]))
+}
+
+/// The one of two strains that is nearer to rest.
+fn nearer(one: f64, other: f64) -> f64 {
+    if one.abs() <= other.abs() { one } else { other }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::calibration::tests::biaxial::record;
     use crate::calibration::tests::helpers::law;
+    use crate::document::Statements;
 
     /// The parameters of a specimen.
     fn values(number: u32, mu: f64) -> [f64; 5] {
@@ -210,6 +233,29 @@ mod tests {
         let tests: Vec<TestData> = numbers.map(|number| specimen(number, mu)).collect();
         let law = Law::named("holzapfel-gasser-ogden").unwrap();
         Group::new(law, &tests, &FitSettings::default()).unwrap()
+    }
+
+    /// At the strains that all of them reached, which are negative.
+    #[test]
+    fn pressed_specimens_are_averaged_where_all_have_been() {
+        let specimen = |name: &str, c10: f64, last: i32| {
+            let rows = (0..=last).map(|row| {
+                let stretch = 1.0 - 0.02 * f64::from(row);
+                let stress = 2.0 * c10 * (stretch - stretch.powi(-2));
+                format!("{stretch},{stress}\n")
+            });
+            let head = "# test: uniaxial\nstretch [-],nominal_stress [MPa]";
+            let text = format!("{head}\n{}", rows.collect::<String>());
+            TestData::parse(name, &text, &Statements::new()).unwrap()
+        };
+        let tests = [specimen("a.csv", 0.09, 10), specimen("b.csv", 0.11, 20)];
+        let law = Law::named("neo-hooke").unwrap();
+        let group = Group::new(law, &tests, &FitSettings::default()).unwrap();
+        let states = group.states(None);
+        let last = states[states.len() - 1];
+        assert!((last.strains[0] + 0.2).abs() < 1e-9, "{last:?}");
+        let right = 2.0 * 0.1 * (0.8 - 0.8_f64.powi(-2));
+        assert!((last.stress.mean / right - 1.0).abs() < 1e-3, "{last:?}");
     }
 
     /// The mean stress of three specimens, their spread, and what stiffer matrices add.

@@ -6,6 +6,7 @@ use super::chart::stress_chart;
 use super::{Axis, Drawing, Line, PALETTE, Stroke};
 use crate::calibration::{Fit, Group, GroupState};
 use crate::document::write_records;
+use crate::statistics::farthest;
 
 /// A group with its name, its states and its mean law.
 pub struct NamedGroup {
@@ -91,8 +92,7 @@ pub fn group_picture(groups: &[NamedGroup]) -> Drawing {
     let axes = groups[0].states.iter().map(|state| state.axis).max();
     let axes = 0..=axes.unwrap_or(0);
     let states = || groups.iter().flat_map(|group| &group.states);
-    let highest = states().map(|state| state.stress.estimate().interval[1]);
-    let highest = highest.fold(0.0, f64::max);
+    let highest = farthest(states().flat_map(|state| state.stress.estimate().interval)).abs();
     let count = axes.clone().count();
     let charts = axes.map(|axis| {
         let lines = curves(groups, axis);
