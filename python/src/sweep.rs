@@ -257,7 +257,7 @@ impl SweepTable {
     /// Of the text of a table.
     #[staticmethod]
     fn parse(py: Python<'_>, name: String, keys: Vec<String>, table: &[u8]) -> PyResult<Self> {
-        let rows = sweep::read(Path::new(&name), keys.len(), table);
+        let rows = sweep::read(Path::new(&name), &keys, table);
         Ok(Self {
             rows: raised(py, rows)?,
             name,

@@ -7,7 +7,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::panicking;
 
 use super::plan::Run;
-use super::{Row, Sweep, blocks, figures, json, read, write};
+use super::{Row, Setting, Sweep, blocks, figures, json, read, write};
 use gelbench_base::document::inputs::noted;
 use gelbench_base::error::{Diagnostic, Error};
 use gelbench_report::output::{ANOTHER_FOLDER, ResultFolder, Unfinished, identity, write_document};
@@ -154,12 +154,12 @@ impl<'a> SweepFolder<'a> {
     }
 
     fn of_parts(&self, parts: usize) -> Result<Vec<Row>, Error> {
-        let keys = self.sweep.keys().len();
+        let keys = self.sweep.keys();
         let (mut rows, mut missing) = (Vec::new(), Vec::new());
         for shard in (1..=parts).filter_map(|part| Shard::new(part, parts)) {
             let path = shard.folder(&self.root).join(TABLE);
             match fs::read(&path) {
-                Ok(bytes) => rows.extend(read(&path, keys, &bytes)?),
+                Ok(bytes) => rows.extend(read(&path, &keys, &bytes)?),
                 Err(_) => missing.push(shard.part.to_string()),
             }
         }
@@ -210,7 +210,7 @@ pub fn free_folder(sweep: &Sweep, usual: PathBuf) -> Result<PathBuf, Error> {
 fn has_another(sweep: &Sweep, runs: &[Run], folder: &Path) -> bool {
     let path = folder.join(TABLE);
     fs::read(&path).is_ok_and(|bytes| {
-        let rows = read(&path, sweep.keys().len(), &bytes);
+        let rows = read(&path, &sweep.keys(), &bytes);
         rows.and_then(|rows| join(runs, rows)).is_err()
     })
 }
@@ -224,7 +224,9 @@ pub fn join(runs: &[Run], mut rows: Vec<Row>) -> Result<Vec<Row>, Error> {
     let same = rows.len() == runs.len()
         && rows.iter().zip(runs).all(|(row, run)| {
             let mut pairs = row.settings.iter().zip(&run.settings);
-            row.number == run.number && pairs.all(|(a, b)| a.plain_text() == b.plain_text())
+            let alike =
+                |a: &Setting, b: &Setting| a.plain_text() == b.plain_text() && a.unit() == b.unit();
+            row.number == run.number && pairs.all(|(a, b)| alike(a, b))
         });
     if same {
         Ok(rows)

@@ -104,5 +104,10 @@ fn column<'a>(head: &'a str, values: &[String]) -> Result<(&'a str, Vec<Setting>
             Diagnostic::error("", message).hint(Points::HINT)
         })
     });
-    Ok((key, read.collect::<Result<_, _>>()?))
+    let read = read.collect::<Result<Vec<Setting>, _>>()?;
+    if read.iter().any(|one| one.unit() != read[0].unit()) {
+        let message = format!("`{key}`: the values have several units");
+        return Err(Diagnostic::error("", message).hint(Points::HINT));
+    }
+    Ok((key, read))
 }

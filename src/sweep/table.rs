@@ -58,11 +58,11 @@ pub fn write(keys: &[String], rows: &[Row]) -> Vec<u8> {
     write_records(std::iter::once(head.collect()).chain(lines)).into_bytes()
 }
 
-/// The rows of a table that [`write()`] has written, with as many keys.
+/// The rows of a table that [`write()`] has written, of these keys.
 ///
 /// # Errors
 /// [`Error::Input`] where it is no such table.
-pub fn read(path: &Path, keys: usize, bytes: &[u8]) -> Result<Vec<Row>, Error> {
+pub fn read(path: &Path, keys: &[String], bytes: &[u8]) -> Result<Vec<Row>, Error> {
     let wrong = || {
         Error::input(
             format!("{} is not a table of a sweep of these keys", path.display()),
@@ -72,14 +72,14 @@ pub fn read(path: &Path, keys: usize, bytes: &[u8]) -> Result<Vec<Row>, Error> {
     rows_of(&read_records(bytes).ok_or_else(wrong)?, keys).ok_or_else(wrong)
 }
 
-fn rows_of(records: &[Vec<String>], keys: usize) -> Option<Vec<Row>> {
+fn rows_of(records: &[Vec<String>], keys: &[String]) -> Option<Vec<Row>> {
     let (head, lines) = records.split_first()?;
-    let figures = 1 + keys..head.len().checked_sub(LAST.len())?;
-    let units: Vec<&str> = head
-        .get(1..figures.start)?
-        .iter()
-        .map(|head| key_and_unit(head).1)
-        .collect();
+    let figures = 1 + keys.len()..head.len().checked_sub(LAST.len())?;
+    let varied = head.get(1..figures.start)?.iter();
+    let (names, units): (Vec<&str>, Vec<&str>) = varied.map(|head| key_and_unit(head)).unzip();
+    if names != keys {
+        return None;
+    }
     let row = |line: &Vec<String>| {
         let settings = line[1..].iter().zip(&units);
         let filled = figures

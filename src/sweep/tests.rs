@@ -101,7 +101,10 @@ fn what_is_kept_is_not_computed_again_and_a_table_is_read_as_it_was_written() {
     assert_eq!(again.unwrap(), first);
     assert_eq!(*computed.lock().unwrap(), [3]);
     let table = write(&sweep.keys(), &first);
-    assert_eq!(read(Path::new("sweep.csv"), 1, &table).unwrap(), first);
+    assert_eq!(
+        read(Path::new("sweep.csv"), &sweep.keys(), &table).unwrap(),
+        first
+    );
 }
 
 #[test]
@@ -187,8 +190,14 @@ fn a_sweep_over_other_keys_or_values_goes_beside_the_one_that_is_there() {
     let adjacent = free_folder(&thickness, output.clone()).unwrap();
     assert!(adjacent.ends_with("out_2"), "{adjacent:?}");
     assert_eq!(free_folder(&width, output.clone()).unwrap(), output);
-    let wider = sweep(&["plate.width=40..62 mm:2"], None);
-    assert_eq!(free_folder(&wider, output.clone()).unwrap(), adjacent);
+    for other in [
+        "width=40..62 mm:2",
+        "length=40..60 mm:2",
+        "width=40..60 cm:2",
+    ] {
+        let other = sweep(&[format!("plate.{other}").as_str()], None);
+        assert_eq!(free_folder(&other, output.clone()).unwrap(), adjacent);
+    }
 }
 
 #[test]
@@ -256,7 +265,7 @@ fn what_deserves_attention_in_single_runs_is_told_of_all_together() {
         "{warnings:?}"
     );
     let keys = sweep.keys();
-    let read = read(Path::new("a.csv"), keys.len(), &write(&keys, &rows)).unwrap();
+    let read = read(Path::new("a.csv"), &keys, &write(&keys, &rows)).unwrap();
     assert_eq!(read, rows);
     assert_eq!(json(&keys, &rows)["warnings"][0], warnings[0]);
     // Each kind of warning once, without a word before it.

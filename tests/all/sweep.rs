@@ -129,7 +129,8 @@ fn runs_without_a_solution_stand_in_the_table() {
         "{printed}"
     );
     let table = fs::read(folder.join("output/s_sweep/sweep.csv")).unwrap();
-    let rows = gelbench::sweep::read(Path::new("sweep.csv"), 1, &table).unwrap();
+    let keys = ["mass_spring.max_iterations".to_owned()];
+    let rows = gelbench::sweep::read(Path::new("sweep.csv"), &keys, &table).unwrap();
     assert!(
         rows[0].fault.contains("no convergence in 1 iterations"),
         "{}",

@@ -190,6 +190,7 @@ fn tables_that_are_no_points_are_told() {
         ("plate.width [mm]\nwide\n", "`wide` is not a number"),
         ("plate.width [mm]\ninf\n", "`inf` is not a number"),
         ("plate.width,a\n1,\n", "`` is not a number"),
+        ("plate.width\n40 mm\n5 cm\n", "several units"),
         ("plate..width\n1\n", "is not a key"),
         (". [mm]\n1\n", "is not a key"),
     ] {
