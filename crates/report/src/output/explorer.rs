@@ -60,6 +60,9 @@ impl Explorer {
             notes.push("Models on meshes too fine for a page are left out.".to_owned());
         }
         let times = times(&models)?;
+        if models.iter().any(|model| model.grids.len() > times.len()) {
+            notes.push("Of steps at one place of the path the first is here.".to_owned());
+        }
         let most = (MOST_BYTES / size(&models).max(1)).max(1);
         let shown = evenly(&times, most);
         if shown.len() < times.len() {

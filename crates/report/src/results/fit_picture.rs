@@ -46,7 +46,7 @@ impl<'a> Course<'a> {
                 let mut label = format!("{name}{direction}");
                 if courses.iter().any(|other| other.label == label) {
                     let stem = Path::new(&data.name).file_stem();
-                    label = stem.map_or(label, |stem| stem.to_string_lossy().into_owned());
+                    label = stem.map_or(label, |stem| format!("{}{direction}", stem.display()));
                 }
                 courses.push(Self {
                     data,
