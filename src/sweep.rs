@@ -24,7 +24,6 @@ use gelbench_base::error::{Diagnostic, Error};
 use gelbench_studies::studies::{PreparedStudy, Progress};
 
 mod altered;
-mod figures;
 #[cfg(feature = "pictures")]
 mod folder;
 mod plan;
@@ -34,13 +33,12 @@ mod table;
 mod variable;
 
 pub use altered::BaseStudy;
-pub use figures::Row;
 #[cfg(feature = "pictures")]
 pub use folder::{Shard, Share, SweepFolder, free_folder, join};
 pub use plan::{FittedParameters, Method, Run, Sampling};
 pub use points::Points;
 pub use results::{Statistics, blocks, cautions, figures, json, statistics};
-pub use table::{names, read, write};
+pub use table::{Row, names, read, write};
 pub use variable::{Setting, Values, Variable, headed};
 
 /// A study and how it is varied.

@@ -16,15 +16,13 @@ use gelbench_studies::studies::name;
 use gelbench_studies::studies::sections::read_text;
 
 mod frames;
-mod job;
 mod joint;
 mod options;
 mod request;
 pub mod values;
 
-use frames::correct;
-use job::Job;
-pub use job::exit_code;
+pub use frames::exit_code;
+use frames::{Job, correct};
 pub use options::Options;
 use request::request;
 

@@ -4,8 +4,7 @@ use std::collections::{HashMap, HashSet};
 
 use serde_json::{Value, json};
 
-use super::figures::Row;
-use super::table::{heads, names};
+use super::table::{Row, heads, names};
 use gelbench_base::statistics::{quantile, rank_correlation};
 use gelbench_base::units::number;
 use gelbench_report::results::models::{CORRECTED, FINITE_ELEMENTS, MASS_SPRING, ModelStyle};

@@ -4,7 +4,7 @@
 //! content in the same order; `output` draws and encodes it.
 
 use serde::{Deserialize, Serialize};
-use serde_json::{Map, Value};
+use serde_json::{Map, Value, json};
 
 use crate::document::stored::{self, StaticText, optional_static_text, static_text};
 use crate::error::Error;
@@ -24,7 +24,6 @@ mod grid;
 mod group;
 mod headline;
 mod identification;
-mod json;
 pub mod locking;
 mod material;
 pub mod models;
@@ -57,7 +56,6 @@ pub use grid::{Grid, GridCell, GridSeries, NamedGrid};
 pub use group::{NamedGroup, group_json, group_picture, group_table};
 pub use headline::{Gauge, Headline, LoadedSheet};
 pub use identification::{identification_json, identification_picture};
-pub use json::object;
 pub use material::{Material, properties};
 pub use picture_style::{Palette, PictureFormat, PictureStyle, PictureWidth};
 pub use report::{claims, pictures};
@@ -256,11 +254,50 @@ impl Results {
         parts.join("\n")
     }
 
+    /// The results in the format of `report.schema.json`. Numbers and models that do not exist are `null`.
+    pub fn json(&self) -> Value {
+        let outcome = &self.outcome;
+        let step = |step: &Step| {
+            let mut all = step.models.clone();
+            all.insert("at".into(), json!(step.at));
+            Value::Object(all)
+        };
+        let times = self.times();
+        let times: Map<_, _> = times.map(|(what, s)| (what.to_owned(), json!(s))).collect();
+        json!({
+            "gelbench": env!("CARGO_PKG_VERSION"),
+            "name": self.name,
+            "kind": self.kind,
+            "title": self.title,
+            "study": { "text": self.text, "defaults": self.defaults },
+            "problem": outcome.problem,
+            "material": outcome.material.as_ref().map(|material| &material.json),
+            "along": (!outcome.along.is_empty()).then_some(outcome.along),
+            "steps": outcome.steps.iter().map(step).collect::<Vec<_>>(),
+            "requirements": outcome.checks.iter().map(Check::json).collect::<Vec<_>>(),
+            "passed": self.passed(),
+            "verdict": verdict(&outcome.checks),
+            "warnings": self.warnings().collect::<Vec<_>>(),
+            "doubts": outcome.doubts().collect::<Vec<_>>(),
+            "findings": outcome.findings.iter().map(Finding::json).collect::<Vec<_>>(),
+            "ends": outcome.ends.iter().map(|end| &end.message).collect::<Vec<_>>(),
+            "balance": { "worst": outcome.balance, "models": outcome.balances },
+            "times_s": times,
+        })
+    }
     /// Whether all requirements are met, no model ended early, and there is no doubt.
     pub fn passed(&self) -> bool {
         let Outcome { checks, ends, .. } = &self.outcome;
         let has_doubt = self.outcome.findings.iter().any(Finding::is_doubt);
         checks.iter().all(Check::passed) && !has_doubt && ends.is_empty()
+    }
+}
+
+/// The entries of an object.
+pub fn object(value: Value) -> Map<String, Value> {
+    match value {
+        Value::Object(entries) => entries,
+        _ => Map::new(),
     }
 }
 

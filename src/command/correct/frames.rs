@@ -3,18 +3,40 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use super::job::Job;
 use crate::command::conclusion::moved_into_place;
 use crate::command::interrupt;
 use crate::command::progress::Progress;
-use crate::command::terminal::{print, warn};
+use crate::command::terminal::{NOT_EXPLAINED, print, warn};
 use gelbench_base::error::Error;
-use gelbench_estimation::estimation::FieldEstimate;
+use gelbench_estimation::estimation::{Answer, FieldEstimate};
 use gelbench_mechanics::markers::Frame;
 use gelbench_report::output::{self, ResultFolder};
 use gelbench_report::results::Results;
 use gelbench_studies::studies::markers::written::{self, FrameFiles, SERIES, played};
 use gelbench_studies::studies::markers::{ComparedFrames, MarkerStudy};
+use gelbench_studies::studies::pictures::Pictures;
+
+/// One folder of results: what they follow from, and how they are written.
+#[derive(Clone)]
+pub struct Job {
+    pub name: String,
+    /// The text of the study, empty where there is none.
+    pub text: String,
+    pub inputs: Vec<PathBuf>,
+    pub folder: PathBuf,
+    /// The command line, by which an interrupted run is recognised together with the files that were read.
+    pub arguments: String,
+    pub pictures: Pictures,
+}
+
+/// The exit code of a verdict, and of whether all requirements are met.
+pub fn exit_code(answer: Answer, passed: bool) -> u8 {
+    match answer {
+        Answer::NotExplained => NOT_EXPLAINED,
+        Answer::Undecided => 1,
+        _ => u8::from(!passed),
+    }
+}
 
 /// Corrects all frames of a field, writes into the job's folder, and prints.
 pub fn correct(field: &mut MarkerStudy, job: Job) -> Result<(Vec<FieldEstimate>, Results), Error> {

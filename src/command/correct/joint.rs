@@ -3,8 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use super::frames::{correct, finish};
-use super::job::{Job, exit_code};
+use super::frames::{Job, correct, exit_code, finish};
 use super::options::Options;
 use super::request::request;
 use crate::command::interrupt;

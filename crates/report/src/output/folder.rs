@@ -24,14 +24,12 @@ use serde::de::DeserializeOwned;
 
 use crate::error::{Diagnostic, Error};
 
-mod identity;
 mod inputs;
 mod manifest;
 mod unfinished;
 
-pub use identity::identity;
+pub use inputs::{identity, refuse_inputs, relative};
 use inputs::{positions, refuse_input};
-pub use inputs::{refuse_inputs, relative};
 use manifest::{Locked, Manifest, Moving, PARTIAL, is_inside};
 pub use unfinished::{BrokenOff, Remains, Unfinished};
 use unfinished::{PARTS, Stage};

@@ -27,7 +27,6 @@ mod numbers;
 mod outlines;
 mod paint;
 mod pdf;
-mod strokes;
 mod thin;
 mod vectors;
 

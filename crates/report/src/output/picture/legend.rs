@@ -1,4 +1,4 @@
-//! The names of the lines of a chart: inside of its area where no line is, else below it.
+//! How the lines of charts are drawn, and their names: inside of the area where no line is, else below it.
 
 use super::canvas::Sheet;
 use super::look::Look;
@@ -140,7 +140,31 @@ impl<'a> Legend<'a> {
 }
 
 /// The dashes between computed points.
-pub(super) const JOINS: [f32; 2] = [3.0, 4.0];
+const JOINS: [f32; 2] = [3.0, 4.0];
+
+impl Line {
+    /// What its points are joined with; `None` where they are not.
+    pub(super) fn pen(&self, look: Look) -> Option<Pen> {
+        let pen = |width| Pen::new(look.line(self.colour), width);
+        match self.stroke {
+            Stroke::Marked | Stroke::Ringed => Some(pen(1.0).dashed(JOINS)),
+            Stroke::Dashed => Some(pen(2.0).dashed([7.0, 5.0])),
+            Stroke::Solid => Some(pen(2.0)),
+            Stroke::Thin => Some(pen(1.0)),
+            Stroke::Points | Stroke::Filled => None,
+        }
+    }
+
+    /// Radius of its markers, their pen, and whether they are filled; `None` where it has none.
+    pub(super) fn marker(&self, radius: f64, look: Look) -> Option<(f64, Pen, bool)> {
+        let pen = |width| Pen::new(look.line(self.colour), width);
+        match self.stroke {
+            Stroke::Marked | Stroke::Points => Some((radius, pen(0.0), true)),
+            Stroke::Ringed => Some((radius + 2.0, pen(2.0), false)),
+            Stroke::Solid | Stroke::Thin | Stroke::Dashed | Stroke::Filled => None,
+        }
+    }
+}
 
 /// Names and remarks with no more than a width of room.
 fn entries(chart: &LineChart, look: Look, width: f64) -> Vec<Entry<'_>> {
