@@ -36,11 +36,11 @@ impl LocalState {
     /// remembers, with a viscous part of the first Piola–Kirchhoff stress in MPa; NaN where the sheet is turned inside out.
     pub fn of(law: &dyn HyperelasticLaw, gradients: &[[f64; 4]], viscous: [f64; 4]) -> Self {
         let Some((gradient, past)) = gradients.split_last() else {
-            return Self::unknown();
+            return Self::mean(&[]);
         };
         // A cell may fold between the points at which a solution is checked.
         let Ok(kinematics) = Kinematics::new(&Vector4::from(*gradient)) else {
-            return Self::unknown();
+            return Self::mean(&[]);
         };
         let past = past.iter().map(|gradient| Vector4::from(*gradient));
         let after = StressAfter::new(law, &kinematics, past);
@@ -63,21 +63,7 @@ impl LocalState {
         }
     }
 
-    fn unknown() -> Self {
-        Self {
-            first_piola_kirchhoff: [f64::NAN; 4],
-            nominal_across: f64::NAN,
-            cauchy: [f64::NAN; 4],
-            green_lagrange: [f64::NAN; 4],
-            stretches: [f64::NAN; 3],
-            first_invariant: f64::NAN,
-            energy: f64::NAN,
-            dissipated: f64::NAN,
-            softening_factor: f64::NAN,
-        }
-    }
-
-    /// The mean of some states, component by component.
+    /// The mean of some states, component by component; NaN of none.
     fn mean(states: &[Self]) -> Self {
         let share = 1.0 / states.len() as f64;
         let mean = |value: &dyn Fn(&Self) -> f64| share * states.iter().map(value).sum::<f64>();
