@@ -33,12 +33,6 @@ pub fn attend() {
     });
 }
 
-/// Names the folder whose unfinished results an interrupt removes.
-pub fn guard(folder: &ResultFolder) {
-    let mut unfinished = UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner);
-    *unfinished = Some(folder.unfinished());
-}
-
 /// Opens results whose unfinished files an interrupt removes; one that comes meanwhile waits until they are open.
 ///
 /// # Errors

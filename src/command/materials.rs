@@ -13,7 +13,9 @@ use super::terminal::{Outcome, print, save, together};
 use gelbench_base::error::Error;
 use gelbench_mechanics::material::registry::{CARDS, LAWS};
 use gelbench_report::output;
-use gelbench_report::results::{Drawing, card_curves, comparison_chart};
+use gelbench_report::results::{
+    Drawing, PictureFormat, PictureStyle, card_curves, comparison_chart,
+};
 
 #[derive(Subcommand)]
 pub enum Materials {
@@ -33,7 +35,7 @@ pub enum Materials {
     Plot {
         /// Name of a shipped card, or path of a card ending in .toml
         card: String,
-        /// The picture; output/materials/ and the card's name with _curves.png if omitted
+        /// The picture, a .png, .svg or .pdf; output/materials/ and the card's name with _curves.png if omitted
         #[arg(long, value_name = "FILE")]
         output: Option<PathBuf>,
     },
@@ -43,7 +45,7 @@ pub enum Materials {
         /// Names of shipped cards, or paths of cards ending in .toml
         #[arg(required = true, num_args = 2..)]
         cards: Vec<String>,
-        /// The picture
+        /// The picture, a .png, .svg or .pdf
         #[arg(
             long,
             value_name = "FILE",
@@ -155,8 +157,12 @@ fn compare(names: &[String], file: &Path) -> Outcome {
     Ok(0)
 }
 
-/// Draws the requested picture; that it cannot be drawn is a fault here, as there is no other result.
+/// Draws the requested picture in the format of its ending; that it cannot be drawn is a fault here, as there is no other result.
 fn save_picture(file: &Path, drawing: &Drawing) -> Result<(), Error> {
-    let picture = output::png(drawing).map_err(|fault| Error::write(file, fault))?;
-    save(file, &picture)
+    let ending = file.extension().unwrap_or_default();
+    let mut formats = PictureFormat::NAMES.into_iter();
+    let format = formats.find(|(name, _)| ending.eq_ignore_ascii_case(name));
+    let format = format.map_or(PictureFormat::Png, |(_, format)| format);
+    let picture = output::picture(drawing, format, &PictureStyle::default());
+    save(file, &picture.map_err(|fault| Error::write(file, fault))?)
 }

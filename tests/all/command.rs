@@ -223,6 +223,10 @@ fn cards_are_listed_and_shown() {
             .join("output/materials/pva-10_curves.png")
             .exists()
     );
+    let plot = ["materials", "plot", "pva-10", "--output", "curves.pdf"];
+    gelbench(folder.path(), &plot).code(0);
+    let picture = fs::read(folder.path().join("curves.pdf")).unwrap();
+    assert!(picture.starts_with(b"%PDF"));
     let done = gelbench(
         folder.path(),
         &["materials", "compare", "pva-10", "neo-hooke"],

@@ -45,7 +45,7 @@ pub fn run(options: Options, mut job: Job) -> Outcome {
     }
     warn(&[given_the_law()]);
     warn_texts(undetermined(&estimate.estimate));
-    interrupt::guard(&folder);
+    let folder = interrupt::guarded(|| Ok(folder))?;
     let results = results(&study, &estimate, &corrected, start.elapsed().as_secs_f64());
     finish(folder, &results)?;
     print_report(|| results.json())?;

@@ -118,11 +118,11 @@ fn bytes_of_step(series: &GridSeries) -> usize {
     2 * grid.points.len() * (2 + shown_arrays(grid).count())
 }
 
-/// The places on the path at which a model has a field; `None` where there is no model.
+/// The places on the path at which a model has a field, from rest on; `None` where there is no model.
 fn times(models: &[&GridSeries]) -> Option<Vec<f64>> {
     let all = models.iter().flat_map(|series| &series.grids);
     let mut times: Vec<f64> = all.filter_map(|grid| grid.time).collect();
-    times.sort_unstable_by(f64::total_cmp);
+    times.sort_by(|one, other| one.abs().total_cmp(&other.abs()));
     times.dedup();
     (!times.is_empty()).then_some(times)
 }

@@ -287,12 +287,12 @@ pub fn save(path: &Path, bytes: &[u8]) -> Result<Option<Diagnostic>, Error> {
 /// Whether a file is there that gelbench has not written: a text that does not name it, or no picture where one is to be.
 fn is_unrelated(path: &Path, new: &[u8]) -> bool {
     const BEGIN: usize = 2048;
-    const PNG: &[u8] = b"\x89PNG";
+    const PICTURES: [&[u8]; 3] = [b"\x89PNG", b"<svg", b"%PDF"];
     let Ok(there) = std::fs::read(path) else {
         return false;
     };
-    if new.starts_with(PNG) {
-        return !there.starts_with(PNG);
+    if let Some(begin) = PICTURES.iter().find(|begin| new.starts_with(begin)) {
+        return !there.starts_with(begin);
     }
     let begin = String::from_utf8_lossy(&there[..there.len().min(BEGIN)]);
     !there.is_empty() && there != new && !begin.contains("gelbench")

@@ -206,7 +206,7 @@
     const curve = data.curves[state.curve];
     const all = Object.values(curve.models).flat().map((point) => point[1]).filter(Number.isFinite);
     const at = data.steps.map((step) => step.at);
-    const [left, right] = [Math.min(0, ...at), Math.max(...at)];
+    const [left, right] = [Math.min(0, ...at), Math.max(0, ...at)];
     const [low, high] = [Math.min(0, ...all), Math.max(0, ...all)];
     const scale = window.devicePixelRatio || 1;
     const [x0, x1, y0, y1] = [12 * scale, canvas.width - 12 * scale, canvas.height - 22 * scale, 20 * scale];
