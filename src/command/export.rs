@@ -149,6 +149,7 @@ fn scene(title: &str, specimen: &Specimen) -> Result<InputFile, Error> {
         title,
         problem: &specimen.problem,
         card: &specimen.card,
+        regions: &specimen.regions,
         springs: &specimen.springs(),
         factors: &specimen.factors,
     };

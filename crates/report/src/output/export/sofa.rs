@@ -39,8 +39,10 @@ pub struct Scene<'a> {
     pub title: &'a str,
     /// Thickness, supports and loads.
     pub problem: &'a BoundaryProblem,
-    /// The material.
+    /// The card of all cells that belong to no region.
     pub card: &'a Card,
+    /// The cards of the problem's regions, with their names.
+    pub regions: &'a [(String, Card)],
     /// The springs.
     pub springs: &'a MassSpring,
     /// Load factors, in the order in which they are reached.
@@ -150,7 +152,20 @@ impl Scene<'_> {
         if card.density.is_none() {
             remarks.push("the card states no density: the scene has no masses, and only its static solver can be used".to_owned());
         }
-        if card.law.softening().is_some() || !card.viscosity.relaxation.is_empty() {
+        let in_time = |card: &Card| (card.density, card.viscosity.shear_viscosity);
+        let mut of_regions = self.regions.iter().map(|(_, card)| card);
+        if of_regions
+            .clone()
+            .any(|other| in_time(other) != in_time(card))
+        {
+            let name = &card.name;
+            remarks.push(format!(
+                "masses and damping are those of the card `{name}` in all regions"
+            ));
+        }
+        let has_memory =
+            |card: &Card| card.law.softening().is_some() || !card.viscosity.relaxation.is_empty();
+        if has_memory(card) || of_regions.any(has_memory) {
             remarks.push("softening and relaxation of the card are left out".to_owned());
         }
         remarks

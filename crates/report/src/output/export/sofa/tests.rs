@@ -75,6 +75,7 @@ fn scene(card: &Card, problem: &BoundaryProblem, springs: &MassSpring) -> Result
         title: "gel",
         problem,
         card,
+        regions: &[],
         springs,
         factors: &[0.5, 1.0],
     };
