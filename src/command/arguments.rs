@@ -4,6 +4,8 @@ use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 
 use gelbench_base::budget::Budget;
+use gelbench_base::error::Diagnostic;
+use gelbench_base::units::{self, Dimension};
 
 /// The parser of an argument that is one of some names, which help and completions list.
 pub fn one_of<T: Copy + Send + Sync + 'static>(
@@ -15,6 +17,14 @@ pub fn one_of<T: Copy + Send + Sync + 'static>(
         all.find(|(known, _)| *known == name)
             .expect("clap has found the name among them")
             .1
+    })
+}
+
+/// A value in the internal unit of its dimension.
+pub fn quantity(text: &str, dimension: Dimension) -> Result<f64, Diagnostic> {
+    units::parse(text, dimension).map_err(|fault| {
+        let hint = fault.remedy(text, dimension);
+        Diagnostic::error("", format!("it {fault}")).hint(hint)
     })
 }
 

@@ -6,13 +6,14 @@ use std::sync::Arc;
 use clap::Args;
 use serde_json::{Value, json};
 
-use super::arguments::Large;
+use super::arguments::{Large, quantity};
+use super::correct::values::unit;
 use super::interrupt;
 use super::progress::{Progress, report_files};
 use super::terminal::{Outcome, Printed, print, print_report, warn};
 use crate::kinds;
 use gelbench_base::error::{Diagnostic, Error};
-use gelbench_base::units::{self, Dimension};
+use gelbench_base::units::Dimension;
 use gelbench_mechanics::material::HyperelasticLaw;
 use gelbench_mechanics::mesh::Mesh;
 use gelbench_mechanics::problem::{Region, SheetLaws};
@@ -37,7 +38,7 @@ pub struct Options {
     pub factor: Option<f64>,
     /// The file's unit of length, mm if neither the file nor this option states it. It corrects the header of a table whose
     /// columns all state one other unit
-    #[arg(long, value_name = "UNIT", value_parser = length)]
+    #[arg(long, value_name = "UNIT", value_parser = unit)]
     pub unit: Option<f64>,
     /// Columns of a table to ignore; other unknown columns are refused
     #[arg(long, value_name = "COLUMN", value_delimiter = ',')]
@@ -355,19 +356,9 @@ fn report(compared: &Comparison, differences: &[Difference], file: &Path) -> Vec
 }
 
 /// A load factor, or a stretch, which is negative where a plate is compressed.
-fn ratio(text: &str) -> Result<f64, String> {
-    match units::parse(text, Dimension::Ratio) {
-        Ok(factor) if factor != 0.0 => Ok(factor),
-        Ok(_) => Err("it must not be zero".into()),
-        Err(fault) => Err(format!(
-            "it {fault}; {}",
-            fault.remedy(text, Dimension::Ratio)
-        )),
+fn ratio(text: &str) -> Result<f64, Diagnostic> {
+    match quantity(text, Dimension::Ratio)? {
+        0.0 => Err(Diagnostic::error("", "it must not be zero")),
+        factor => Ok(factor),
     }
-}
-
-/// The length of a unit in mm.
-pub(super) fn length(unit: &str) -> Result<f64, String> {
-    units::factor(unit, Dimension::Length)
-        .map_err(|fault| format!("it {fault}; {}", fault.remedy(unit, Dimension::Length)))
 }

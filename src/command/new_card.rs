@@ -4,14 +4,14 @@ use std::path::{Path, PathBuf};
 
 use clap::{ArgAction, Args};
 
-use super::arguments::one_of;
+use super::arguments::{one_of, quantity};
 use super::fit::{a_law, shipped};
 use super::message::along;
 use super::parameter_bounds::pair;
 use super::terminal::{Outcome, print, save};
 use gelbench_base::document::{file, read_text};
 use gelbench_base::error::{Diagnostic, Error};
-use gelbench_base::units::{self, Dimension, brief};
+use gelbench_base::units::{Dimension, brief};
 use gelbench_mechanics::material::registry::Law;
 use gelbench_mechanics::material::{Card, Code, Known, Moduli, VolumeEnergy};
 
@@ -265,11 +265,4 @@ fn stress(text: &str) -> Result<f64, Diagnostic> {
 
 fn ratio(text: &str) -> Result<f64, Diagnostic> {
     quantity(text, Dimension::Ratio)
-}
-
-fn quantity(text: &str, dimension: Dimension) -> Result<f64, Diagnostic> {
-    units::parse(text, dimension).map_err(|fault| {
-        let hint = fault.remedy(text, dimension);
-        Diagnostic::error("", fault.to_string()).hint(hint)
-    })
 }

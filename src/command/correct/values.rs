@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use crate::command::arguments;
 use gelbench_base::document::TextEncoding;
 use gelbench_base::error::{Diagnostic, Error};
 use gelbench_base::units::{self, Dimension};
@@ -77,7 +78,7 @@ fn on_an_edge<'a>(
 }
 
 fn newtons(text: &str) -> Result<f64, Diagnostic> {
-    quantity(text, Dimension::Force, |_| true, "", "")
+    arguments::quantity(text, Dimension::Force)
 }
 
 /// A time in s.
@@ -126,10 +127,7 @@ fn quantity(
     wanted: &str,
     example: &str,
 ) -> Result<f64, Diagnostic> {
-    let value = units::parse(text, dimension).map_err(|fault| {
-        let hint = fault.remedy(text, dimension);
-        Diagnostic::error("", format!("it {fault}")).hint(hint)
-    })?;
+    let value = arguments::quantity(text, dimension)?;
     if holds(value) {
         Ok(value)
     } else {
