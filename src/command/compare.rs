@@ -141,7 +141,7 @@ fn compute(options: &Options) -> Result<Comparison, Error> {
 /// Refuses load factors that a study does not have.
 fn check_factor(specimen: &Specimen, factor: f64, last: f64) -> Result<(), Error> {
     let is_stretch = specimen.along == Along::Stretch;
-    if is_stretch && factor > PERCENTAGE && factor > last {
+    if is_stretch && factor.abs() > last.abs().max(PERCENTAGE) {
         let message = format!("--factor {factor} is a stretch of {} %", 100.0 * factor);
         let hint = format!("write --factor \"{factor} %\" if percent is meant");
         return Err(Error::input(message, hint));

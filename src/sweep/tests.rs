@@ -211,6 +211,9 @@ fn values_are_each_one_and_without_the_noise_of_their_last_digits() {
     };
     let words: Vec<String> = values.iter().map(Setting::plain_text).collect();
     assert_eq!(words[3], "0.39");
+    let cells = Values::Listed([20, 40, 60].map(Setting::Integer).into());
+    let grid = Variable::parse("plate.cells.0=20..60:3").unwrap();
+    assert_eq!(grid.values, cells);
 }
 
 #[test]

@@ -229,8 +229,12 @@ fn grid([low, high]: [f64; 2], unit: &str, count: &str) -> Result<Values, String
         let share = index as f64 / last;
         let exact = low * (1.0 - share) + high * share;
         // Without the noise of the last binary digits: 0.39 for 0.38999999999999996.
-        let value = format!("{exact:.14e}").parse().unwrap_or(exact);
-        Setting::Number(value, unit.to_owned())
+        let value: f64 = format!("{exact:.14e}").parse().unwrap_or(exact);
+        match unit {
+            // Numbers of cells have to be whole ones.
+            "" => Setting::of(&value.to_string()),
+            unit => Setting::Number(value, unit.to_owned()),
+        }
     };
     Ok(Values::Listed((0..count).map(value).collect()))
 }
