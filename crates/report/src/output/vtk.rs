@@ -204,7 +204,7 @@ mod tests {
 
     #[test]
     fn symmetric_tensors_have_six_named_components() {
-        let stress = Array::symmetric_tensors("stress_MPa", [[1.0, 2.0, 3.0, 4.0]]);
+        let stress = Array::new("stress_MPa", Components::Symmetric, [1.0, 2.0, 3.0, 4.0]);
         let grid = Grid::scattered(&[[1.0, 2.0]], &[0.5, 0.0]).with([stress]);
         let text = String::from_utf8(super::grid(&grid)).unwrap();
         let heads: Vec<_> = text.split("<DataArray ").skip(1).collect();

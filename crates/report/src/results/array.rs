@@ -58,22 +58,8 @@ impl Array {
         Self::new(name, Components::Tensor, values)
     }
 
-    /// Symmetric tensors: 11, 22, 33, 12.
-    pub fn symmetric_tensors(
-        name: &'static str,
-        values: impl IntoIterator<Item = [f64; 4]>,
-    ) -> Self {
-        let values = values.into_iter().flatten();
-        Self::new(name, Components::Symmetric, values)
-    }
-
-    /// The larger and the smaller stretch in the plane, and that of the thickness.
-    pub fn stretches(name: &'static str, values: impl IntoIterator<Item = [f64; 3]>) -> Self {
-        let values = values.into_iter().flatten();
-        Self::new(name, Components::Stretches, values)
-    }
-
-    fn new(
+    /// Numbers, those of one point or cell after the other.
+    pub fn new(
         name: &'static str,
         components: Components,
         values: impl IntoIterator<Item = f64>,

@@ -1,9 +1,9 @@
 //! Stress, strain and related quantities as arrays of a grid.
 
-use super::Array;
 use super::sheet::Sheet;
 use super::state::{LocalState, cell_states, nodal_states};
 use super::wrinkling::Wrinkling;
+use super::{Array, Components};
 use crate::mesh::Mesh;
 
 /// Arrays at the nodes, from the mean of the displacement gradients that the cells around each node have there.
@@ -13,7 +13,7 @@ pub fn nodal(sheet: Sheet, mesh: &Mesh, displacement: &[f64]) -> [Array; 5] {
     let states = nodal_states(&laws, mesh, &sheet.fields(displacement), viscous);
     let of = |name, value: fn(&LocalState) -> f64| Array::scalars(name, states.iter().map(value));
     let tensors = |name, value: fn(&LocalState) -> [f64; 4]| {
-        Array::symmetric_tensors(name, states.iter().map(value))
+        Array::new(name, Components::Symmetric, states.iter().flat_map(value))
     };
     [
         tensors("cauchy_stress_at_nodes_MPa", |state| state.cauchy),
@@ -46,7 +46,7 @@ pub fn in_cells(sheet: Sheet, mesh: &Mesh, displacement: &[f64]) -> Vec<Array> {
         [p11, p21, p12, p22, state.nominal_across]
     });
     let tensors = |name, value: fn(&LocalState) -> [f64; 4]| {
-        Array::symmetric_tensors(name, states().map(value))
+        Array::new(name, Components::Symmetric, states().flat_map(value))
     };
     let exceeded = wrinkling.exceeded.iter();
     let exceeded = exceeded.map(|is| f64::from(u8::from(*is)));
@@ -65,7 +65,11 @@ pub fn in_cells(sheet: Sheet, mesh: &Mesh, displacement: &[f64]) -> Vec<Array> {
             "largest_principal_green_lagrange_strain",
             LocalState::largest_principal_strain,
         ),
-        Array::stretches("principal_stretches", states().map(|state| state.stretches)),
+        Array::new(
+            "principal_stretches",
+            Components::Stretches,
+            states().flat_map(|state| state.stretches),
+        ),
         of("first_invariant_I1", |state| state.first_invariant),
         Array::scalars("thickness_mm", thickness),
         of("energy_density_mJ_per_mm3", |state| state.energy),
