@@ -31,36 +31,33 @@ pub fn write(model: &Model) -> String {
     for line in std::iter::once(ascii(model.given.title)).chain(model.head()) {
         file.comment(&line);
     }
-    file.open("febio_spec", &[("version", "4.0")]);
-    file.empty("Module", &[("type", "solid")]);
-    materials(model, &mut file);
-    mesh(model, &columns, &mut file);
-    let mut curves = Curves::default();
-    boundary(model, &columns, &mut curves, &mut file);
-    loads(model, &columns, &mut file);
-    steps(model, &mut file);
-    curves.write(model, &mut file);
-    file.open("Output", &[]);
-    file.open("plotfile", &[("type", "febio")]);
-    file.empty("var", &[("type", "displacement")]);
-    file.empty("var", &[("type", "stress")]);
-    file.empty("var", &[("type", "reaction forces")]);
-    file.close("plotfile");
-    file.open("logfile", &[]);
-    file.empty("node_data", &[("data", "x;y;z;ux;uy;uz"), ("delim", ",")]);
-    file.close("logfile");
-    file.close("Output");
-    file.close("febio_spec");
+    file.within("febio_spec", &[("version", "4.0")], |file| {
+        file.empty("Module", &[("type", "solid")]);
+        file.within("Material", &[], |file| {
+            for (part, id) in model.materials.iter().zip(1..) {
+                material(part, id, file);
+            }
+        });
+        mesh(model, &columns, file);
+        let mut curves = Curves::default();
+        boundary(model, &columns, &mut curves, file);
+        loads(model, &columns, file);
+        steps(model, file);
+        curves.write(model, file);
+        file.within("Output", &[], output);
+    });
     file.finish()
 }
 
-/// All materials.
-fn materials(model: &Model, file: &mut Xml) {
-    file.open("Material", &[]);
-    for (part, id) in model.materials.iter().zip(1..) {
-        material(part, id, file);
-    }
-    file.close("Material");
+fn output(file: &mut Xml) {
+    file.within("plotfile", &[("type", "febio")], |file| {
+        for quantity in ["displacement", "stress", "reaction forces"] {
+            file.empty("var", &[("type", quantity)]);
+        }
+    });
+    file.within("logfile", &[], |file| {
+        file.empty("node_data", &[("data", "x;y;z;ux;uy;uz"), ("delim", ",")]);
+    });
 }
 
 /// The law with its parameters, and axes of which the first lies along its direction where it has one.
@@ -74,20 +71,18 @@ fn material(material: &PartMaterial, id: usize, file: &mut Xml) {
         unreachable!("FEBio has no law of a tension curve");
     };
     let (id, name) = (id.to_string(), material.name.to_lowercase());
-    file.open(
-        "material",
-        &[("id", &id), ("name", &name), ("type", keyword)],
-    );
-    for (name, value) in parameters {
-        file.text(name, &[], &number(*value));
-    }
-    if let [[x, y], ..] = directions[..] {
-        file.open("mat_axis", &[("type", "vector")]);
-        file.text("a", &[], &format!("{},{},0", number(x), number(y)));
-        file.text("d", &[], &format!("{},{},0", number(-y), number(x)));
-        file.close("mat_axis");
-    }
-    file.close("material");
+    let attributes = [("id", &*id), ("name", &*name), ("type", keyword.as_str())];
+    file.within("material", &attributes, |file| {
+        for (name, value) in parameters {
+            file.text(name, &[], &number(*value));
+        }
+        if let [[x, y], ..] = directions[..] {
+            file.within("mat_axis", &[("type", "vector")], |file| {
+                file.text("a", &[], &format!("{},{},0", number(x), number(y)));
+                file.text("d", &[], &format!("{},{},0", number(-y), number(x)));
+            });
+        }
+    });
 }
 
 fn solid_name(shape: CellShape) -> &'static str {
@@ -137,34 +132,38 @@ fn domains(model: &Model) -> Vec<Domain> {
 }
 
 fn mesh(model: &Model, columns: &Columns, file: &mut Xml) {
-    let half = model.given.problem.thickness / 2.0;
-    file.open("Mesh", &[]);
-    file.open("Nodes", &[("name", "sheet")]);
-    for (node, column) in &columns.0 {
-        let [x, y] = model.given.mesh.nodes[*node].map(number);
-        for (level, id) in column.iter().enumerate() {
-            let z = number(half * level as f64 / (column.len() - 1) as f64);
-            file.text("node", &[("id", &id.to_string())], &format!("{x},{y},{z}"));
-        }
-    }
-    file.close("Nodes");
     let domains = domains(model);
-    for domain in &domains {
-        let kind = solid_name(domain.shape);
-        file.open("Elements", &[("type", kind), ("name", &domain.name)]);
-        for cell in &domain.cells {
-            let (id, (shape, nodes)) = ((cell + 1).to_string(), model.cells[*cell]);
-            file.text("elem", &[("id", &id)], &list(columns.solid(shape, nodes)));
+    file.within("Mesh", &[], |file| {
+        nodes(model, columns, file);
+        for domain in &domains {
+            let attributes = [("type", solid_name(domain.shape)), ("name", &*domain.name)];
+            file.within("Elements", &attributes, |file| {
+                for cell in &domain.cells {
+                    let (id, (shape, nodes)) = ((cell + 1).to_string(), model.cells[*cell]);
+                    file.text("elem", &[("id", &id)], &list(columns.solid(shape, nodes)));
+                }
+            });
         }
-        file.close("Elements");
-    }
-    sets(model, columns, file);
-    file.close("Mesh");
-    file.open("MeshDomains", &[]);
-    for Domain { name, material, .. } in &domains {
-        file.empty("SolidDomain", &[("name", name), ("mat", material)]);
-    }
-    file.close("MeshDomains");
+        sets(model, columns, file);
+    });
+    file.within("MeshDomains", &[], |file| {
+        for Domain { name, material, .. } in &domains {
+            file.empty("SolidDomain", &[("name", name), ("mat", material)]);
+        }
+    });
+}
+
+fn nodes(model: &Model, columns: &Columns, file: &mut Xml) {
+    let half = model.given.problem.thickness / 2.0;
+    file.within("Nodes", &[("name", "sheet")], |file| {
+        for (node, column) in &columns.0 {
+            let [x, y] = model.given.mesh.nodes[*node].map(number);
+            for (level, id) in column.iter().enumerate() {
+                let z = number(half * level as f64 / (column.len() - 1) as f64);
+                file.text("node", &[("id", &id.to_string())], &format!("{x},{y},{z}"));
+            }
+        }
+    });
 }
 
 /// Node sets and surfaces.
@@ -188,17 +187,15 @@ fn sets(model: &Model, columns: &Columns, file: &mut Xml) {
         );
     }
     for (name, sides) in &model.surfaces {
-        file.open("Surface", &[("name", name)]);
-        for (number, (cell, side)) in sides.iter().enumerate() {
-            let (shape, nodes) = model.cells[*cell];
-            let edge: Vec<_> = shape.edges()[*side]
-                .iter()
-                .map(|position| nodes[*position])
-                .collect();
-            let (kind, face) = columns.face(shape, &edge);
-            file.text(kind, &[("id", &(number + 1).to_string())], &list(face));
-        }
-        file.close("Surface");
+        file.within("Surface", &[("name", name)], |file| {
+            for (number, (cell, side)) in sides.iter().enumerate() {
+                let (shape, nodes) = model.cells[*cell];
+                let edge = shape.edges()[*side].iter();
+                let edge: Vec<_> = edge.map(|position| nodes[*position]).collect();
+                let (kind, face) = columns.face(shape, &edge);
+                file.text(kind, &[("id", &(number + 1).to_string())], &list(face));
+            }
+        });
     }
 }
 
@@ -227,46 +224,44 @@ fn node_forces(model: &Model, columns: &Columns) -> Vec<(usize, usize, [f64; 2])
 
 fn boundary(model: &Model, columns: &Columns, curves: &mut Curves, file: &mut Xml) {
     let axes = ["x", "y"];
-    file.open("Boundary", &[]);
-    fixed(MID_PLANE, "z", file);
-    for held in &model.held {
-        let (name, nodes) = &model.sets[held.set];
-        let axis = axes[held.axis];
-        match held.uniform() {
-            Some(0.0) => fixed(name, axis, file),
-            Some(displacement) => prescribed(name, axis, displacement, 1, file),
-            None => {
-                for node in nodes.iter().filter(|node| columns.0.contains_key(node)) {
-                    let curve = curves.turn(model, held, *node);
-                    prescribed(&turned_set(*node), axis, 1.0, curve, file);
+    file.within("Boundary", &[], |file| {
+        fixed(MID_PLANE, "z", file);
+        for held in &model.held {
+            let (name, nodes) = &model.sets[held.set];
+            let axis = axes[held.axis];
+            match held.uniform() {
+                Some(0.0) => fixed(name, axis, file),
+                Some(displacement) => prescribed(name, axis, displacement, 1, file),
+                None => {
+                    for node in nodes.iter().filter(|node| columns.0.contains_key(node)) {
+                        let curve = curves.turn(model, held, *node);
+                        prescribed(&turned_set(*node), axis, 1.0, curve, file);
+                    }
                 }
             }
         }
-    }
-    file.close("Boundary");
-}
-
-/// Opens a condition on an axis of a node set.
-fn open_condition(set: &str, axis: &str, kind: &str, file: &mut Xml) {
-    let name = format!("{set}_{axis}");
-    file.open("bc", &[("name", &name), ("node_set", set), ("type", kind)]);
+    });
 }
 
 fn fixed(set: &str, axis: &str, file: &mut Xml) {
-    open_condition(set, axis, "zero displacement", file);
-    for each in ["x", "y", "z"] {
-        let held = if each == axis { "1" } else { "0" };
-        file.text(&format!("{each}_dof"), &[], held);
-    }
-    file.close("bc");
+    let (name, kind) = (format!("{set}_{axis}"), "zero displacement");
+    let attributes = [("name", &*name), ("node_set", set), ("type", kind)];
+    file.within("bc", &attributes, |file| {
+        for each in ["x", "y", "z"] {
+            let held = if each == axis { "1" } else { "0" };
+            file.text(&format!("{each}_dof"), &[], held);
+        }
+    });
 }
 
 fn prescribed(set: &str, axis: &str, value: f64, curve: usize, file: &mut Xml) {
-    open_condition(set, axis, "prescribed displacement", file);
-    file.text("dof", &[], axis);
-    file.text("value", &[("lc", &curve.to_string())], &number(value));
-    file.text("relative", &[], "0");
-    file.close("bc");
+    let (name, kind) = (format!("{set}_{axis}"), "prescribed displacement");
+    let attributes = [("name", &*name), ("node_set", set), ("type", kind)];
+    file.within("bc", &attributes, |file| {
+        file.text("dof", &[], axis);
+        file.text("value", &[("lc", &curve.to_string())], &number(value));
+        file.text("relative", &[], "0");
+    });
 }
 
 fn loads(model: &Model, columns: &Columns, file: &mut Xml) {
@@ -274,51 +269,53 @@ fn loads(model: &Model, columns: &Columns, file: &mut Xml) {
     if forces.is_empty() && model.pressures.is_empty() {
         return;
     }
-    file.open("Loads", &[]);
-    for (number_of, (_, _, [x, y])) in forces.into_iter().enumerate() {
-        let set = force_set(number_of);
-        file.open(
-            "nodal_load",
-            &[("name", &set), ("node_set", &set), ("type", "nodal_force")],
-        );
-        file.text(
-            "value",
-            &[("lc", "1")],
-            &format!("{},{},0", number(x), number(y)),
-        );
-        file.text("relative", &[], "0");
-        file.close("nodal_load");
-    }
-    for (surface, pressure) in &model.pressures {
-        let name = &model.surfaces[*surface].0;
-        file.open(
-            "surface_load",
-            &[("name", name), ("surface", name), ("type", "pressure")],
-        );
-        file.text("pressure", &[("lc", "1")], &number(*pressure));
-        file.text("linear", &[], "0");
-        file.close("surface_load");
-    }
-    file.close("Loads");
+    file.within("Loads", &[], |file| {
+        for (number_of, (_, _, [x, y])) in forces.into_iter().enumerate() {
+            let set = force_set(number_of);
+            let attributes = [
+                ("name", &*set),
+                ("node_set", &*set),
+                ("type", "nodal_force"),
+            ];
+            let value = format!("{},{},0", number(x), number(y));
+            file.within("nodal_load", &attributes, |file| {
+                file.text("value", &[("lc", "1")], &value);
+                file.text("relative", &[], "0");
+            });
+        }
+        for (surface, pressure) in &model.pressures {
+            let name = &*model.surfaces[*surface].0;
+            let attributes = [("name", name), ("surface", name), ("type", "pressure")];
+            file.within("surface_load", &attributes, |file| {
+                file.text("pressure", &[("lc", "1")], &number(*pressure));
+                file.text("linear", &[], "0");
+            });
+        }
+    });
 }
 
 /// One step for each load factor; the time is the load factor without its sign.
 fn steps(model: &Model, file: &mut Xml) {
-    file.open("Step", &[]);
-    let mut before = 0.0;
-    for (index, factor) in model.given.factors.iter().enumerate() {
-        let id = (index + 1).to_string();
-        let size = (factor - before).abs() / f64::from(TIME_STEPS);
-        file.open(
-            "step",
-            &[("id", &id), ("name", &format!("load factor {factor}"))],
-        );
-        file.open("Control", &[]);
-        file.text("analysis", &[], "STATIC");
-        file.text("time_steps", &[], &TIME_STEPS.to_string());
-        file.text("step_size", &[], &number(size));
-        file.text("plot_level", &[], "PLOT_STEP_FINAL");
-        file.open("time_stepper", &[("type", "default")]);
+    file.within("Step", &[], |file| {
+        let mut before = 0.0_f64;
+        for (index, factor) in model.given.factors.iter().enumerate() {
+            let size = (factor - before).abs() / f64::from(TIME_STEPS);
+            let (id, name) = ((index + 1).to_string(), format!("load factor {factor}"));
+            file.within("step", &[("id", &id), ("name", &name)], |file| {
+                file.within("Control", &[], |file| control(size, file));
+            });
+            before = *factor;
+        }
+    });
+}
+
+/// How a step is computed, in steps of time of one size to begin with.
+fn control(size: f64, file: &mut Xml) {
+    file.text("analysis", &[], "STATIC");
+    file.text("time_steps", &[], &TIME_STEPS.to_string());
+    file.text("step_size", &[], &number(size));
+    file.text("plot_level", &[], "PLOT_STEP_FINAL");
+    file.within("time_stepper", &[("type", "default")], |file| {
         for (name, value) in [
             ("max_retries", 10.0),
             ("opt_iter", 15.0),
@@ -327,16 +324,11 @@ fn steps(model: &Model, file: &mut Xml) {
         ] {
             file.text(name, &[], &number(value));
         }
-        file.close("time_stepper");
-        file.open("solver", &[("type", "solid")]);
+    });
+    file.within("solver", &[("type", "solid")], |file| {
         file.text("symmetric_stiffness", &[], "symmetric");
-        file.open("qn_method", &[("type", "BFGS")]);
-        file.text("max_ups", &[], "0");
-        file.close("qn_method");
-        file.close("solver");
-        file.close("Control");
-        file.close("step");
-        before = *factor;
-    }
-    file.close("Step");
+        file.within("qn_method", &[("type", "BFGS")], |file| {
+            file.text("max_ups", &[], "0");
+        });
+    });
 }

@@ -79,20 +79,20 @@ impl Scene<'_> {
         }
         let step = (times.last() / 100.0).to_string();
         let root = [("name", "root"), ("dt", &*step), ("gravity", "0 0 0")];
-        file.open("Node", &root);
-        for plugin in PLUGINS {
-            file.empty("RequiredPlugin", &[("name", plugin)]);
-        }
-        let flags = "showBehaviorModels showForceFields";
-        file.empty("VisualStyle", &[("displayFlags", flags)]);
-        file.empty("DefaultAnimationLoop", &[]);
-        file.open("Node", &[("name", "sheet")]);
-        self.solvers(&mut file);
-        self.lattice(&mut file);
-        held.iter().for_each(|held| held.write(&times, &mut file));
-        write_forces(&forces, &times, &mut file);
-        file.close("Node");
-        file.close("Node");
+        file.within("Node", &root, |file| {
+            for plugin in PLUGINS {
+                file.empty("RequiredPlugin", &[("name", plugin)]);
+            }
+            let flags = "showBehaviorModels showForceFields";
+            file.empty("VisualStyle", &[("displayFlags", flags)]);
+            file.empty("DefaultAnimationLoop", &[]);
+            file.within("Node", &[("name", "sheet")], |file| {
+                self.solvers(file);
+                self.lattice(file);
+                held.iter().for_each(|held| held.write(&times, file));
+                write_forces(&forces, &times, file);
+            });
+        });
         Ok(InputFile {
             text: file.finish(),
             remarks: self.remarks(),

@@ -19,12 +19,15 @@ impl Xml {
             .expect("writing to memory does not fail");
     }
 
-    pub fn open(&mut self, name: &str, attributes: &[(&str, &str)]) {
+    pub fn within(
+        &mut self,
+        name: &str,
+        attributes: &[(&str, &str)],
+        content: impl FnOnce(&mut Self),
+    ) {
         let start = BytesStart::new(name).with_attributes(attributes.iter().copied());
         self.event(Event::Start(start));
-    }
-
-    pub fn close(&mut self, name: &str) {
+        content(self);
         self.event(Event::End(BytesEnd::new(name)));
     }
 
@@ -34,9 +37,9 @@ impl Xml {
     }
 
     pub fn text(&mut self, name: &str, attributes: &[(&str, &str)], text: &str) {
-        self.open(name, attributes);
-        self.event(Event::Text(BytesText::new(text)));
-        self.close(name);
+        self.within(name, attributes, |file| {
+            file.event(Event::Text(BytesText::new(text)));
+        });
     }
 
     /// A remark; two hyphens in a row would end it.

@@ -16,7 +16,7 @@ impl Curves {
     pub fn turn(&mut self, model: &Model, held: &Constraint, node: usize) -> usize {
         let position = model.given.mesh.nodes[node];
         let mut points = vec![[0.0, 0.0]];
-        let mut before = 0.0;
+        let mut before = 0.0_f64;
         for factor in model.given.factors {
             for i in 1..=TURN_POINTS {
                 let at = match i {
@@ -32,28 +32,23 @@ impl Curves {
     }
 
     pub fn write(self, model: &Model, file: &mut Xml) {
-        file.open("LoadData", &[]);
         // Load factors have one sign, and grow where nothing softens.
         let factor = vec![[0.0, 0.0], [1.0, model.given.factors[0].signum()]];
-        for (index, points) in std::iter::once(factor).chain(self.0).enumerate() {
-            let id = (index + 1).to_string();
-            file.open(
-                "load_controller",
-                &[
-                    ("id", &id),
-                    ("name", &format!("curve {id}")),
-                    ("type", "loadcurve"),
-                ],
-            );
-            file.text("interpolate", &[], "LINEAR");
-            file.text("extend", &[], "EXTRAPOLATE");
-            file.open("points", &[]);
-            for [time, value] in points {
-                file.text("pt", &[], &format!("{},{}", number(time), number(value)));
+        file.within("LoadData", &[], |file| {
+            for (index, points) in std::iter::once(factor).chain(self.0).enumerate() {
+                let id = (index + 1).to_string();
+                let name = format!("curve {id}");
+                let attributes = [("id", &*id), ("name", &*name), ("type", "loadcurve")];
+                file.within("load_controller", &attributes, |file| {
+                    file.text("interpolate", &[], "LINEAR");
+                    file.text("extend", &[], "EXTRAPOLATE");
+                    file.within("points", &[], |file| {
+                        for [time, value] in points {
+                            file.text("pt", &[], &format!("{},{}", number(time), number(value)));
+                        }
+                    });
+                });
             }
-            file.close("points");
-            file.close("load_controller");
-        }
-        file.close("LoadData");
+        });
     }
 }
