@@ -21,6 +21,7 @@ use gelbench_report::compare::imported::{
     Difference, ExternalField, ImportSettings, Mismatch, ModelField, ModelFields, Sites,
 };
 use gelbench_report::output::{self, ResultFolder};
+use gelbench_report::results::models::FINITE_ELEMENTS;
 use gelbench_report::results::{Array, Block, Grid, GridSeries, Sheet, Table};
 use gelbench_studies::studies;
 use gelbench_studies::studies::sections;
@@ -92,7 +93,7 @@ pub fn run(options: Options) -> Outcome {
         )
     })?;
     print(&summary(&compared, &differences))?;
-    let doubts = doubts(&differences, compared.factor);
+    let doubts = doubts(&compared, &differences);
     warn(&doubts);
     print_report(|| json(&compared, &differences, &doubts, &options.field))?;
     if let Some(folder) = &options.output {
@@ -184,7 +185,7 @@ fn import(options: &Options, factor: f64, lattice: &Mesh) -> Result<(ExternalFie
 
 /// Displacements that all models find larger or smaller by one factor, be it the ratio of two
 /// units or of two load factors.
-fn doubts(differences: &[Difference], at: f64) -> Vec<Diagnostic> {
+fn doubts(compared: &Comparison, differences: &[Difference]) -> Vec<Diagnostic> {
     let ratios: Option<Vec<f64>> = differences.iter().map(Difference::other_unit).collect();
     let ratio = ratios.filter(|ratios| ratios.iter().all(|ratio| *ratio == ratios[0]));
     let doubt = ratio.map(|ratios| {
@@ -198,6 +199,7 @@ fn doubts(differences: &[Difference], at: f64) -> Vec<Diagnostic> {
     let scaled = differences.iter().all(Difference::is_scaled);
     let doubt = doubt.or_else(|| {
         let share = 1.0 / differences[0].factor;
+        let at = compared.factor;
         scaled.then(|| {
             let message = format!(
                 "the imported displacements are about {share:.3} times those of the models at the load factor {at}, as if at another load factor"
@@ -205,11 +207,13 @@ fn doubts(differences: &[Difference], at: f64) -> Vec<Diagnostic> {
             Diagnostic::warning("", message).hint("state the file's load factor with --factor")
         })
     });
-    // The finite elements come first.
-    let shifted = differences
-        .first()
-        .filter(|difference| doubt.is_none() && difference.is_shifted());
-    doubt.into_iter().chain(shifted.map(shift_doubt)).collect()
+    let pairs = compared.models.fields.iter().zip(differences);
+    let shifted = pairs.filter(|(field, difference)| {
+        doubt.is_none() && field.model == FINITE_ELEMENTS.name && difference.is_shifted()
+    });
+    let shifted = shifted.map(|(_, difference)| shift_doubt(difference));
+    let shifted: Vec<Diagnostic> = shifted.collect();
+    doubt.into_iter().chain(shifted).collect()
 }
 
 /// The difference of finite elements that is mostly a rigid-body motion, which does not concern the material.

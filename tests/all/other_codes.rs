@@ -142,6 +142,12 @@ fn a_field_of_ones_own_deviates_by_nothing() {
     let wrong = [&two[..], &["--array", "velocity"]].concat();
     let done = gelbench(folder.path(), &wrong).code(2);
     assert!(words(&done.get_output().stderr).contains("imported_displacement_mm"));
+    // Without finite elements the other models are compared.
+    let others = format!("models = [\"mass-spring\", \"corrected\"]\n{PLATE}");
+    fs::write(folder.path().join("small.toml"), others).unwrap();
+    let done = gelbench(folder.path(), &compare[..5]).code(0);
+    let printed = words(&done.get_output().stdout);
+    assert!(printed.contains("own error is not known"), "{printed}");
 }
 
 /// What a run says of the corrected field and what a comparison with its finite elements says is the same, but for the places; a shift

@@ -47,7 +47,7 @@ pub struct ModelField {
 /// The fields of all models at one load factor.
 #[derive(Debug)]
 pub struct ModelFields {
-    /// Finite elements, springs, and the corrected springs that have a solution.
+    /// Of finite elements, springs and corrected springs those that are computed and have a solution.
     pub fields: Vec<ModelField>,
     /// Why the others have no solution.
     pub ends: Vec<Error>,
@@ -56,20 +56,17 @@ pub struct ModelFields {
 }
 
 impl ModelFields {
-    /// The fields of finite elements, springs and corrected springs, as far as they have a solution, and why the others have none.
+    /// The fields of finite elements, springs and corrected springs, as far as they are computed and have a solution, and why the others
+    /// have none.
     ///
     /// # Errors
-    /// The first of `ends` where the finite elements have no solution.
-    ///
-    /// # Panics
-    /// Where they have none and `ends` is empty.
+    /// The first of `ends`, if there is one, where the finite elements have no solution.
     pub fn of(
         fields: [Option<ModelField>; 3],
         mut ends: Vec<Error>,
         own_percent: Option<f64>,
     ) -> Result<Self, Error> {
-        if fields[0].is_none() {
-            assert!(!ends.is_empty(), "a model that ends says why");
+        if fields[0].is_none() && !ends.is_empty() {
             return Err(ends.swap_remove(0));
         }
         Ok(Self {
