@@ -17,10 +17,8 @@ use crate::results::{Array, Components, Grid, GridCell, GridSeries, Results};
 use crate::statistics::extremes;
 
 mod curves;
-mod labels;
 
-use curves::curves;
-use labels::{label, model_label};
+use curves::{curves, label, model_label};
 
 /// The most bytes of all fields, before they become letters.
 const MOST_BYTES: usize = 3_000_000;
