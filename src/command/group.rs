@@ -74,7 +74,7 @@ pub fn group(arguments: GroupArguments) -> Outcome {
     let reading = arguments.reading.reading()?;
     let files = [&arguments.data[..], &arguments.against[..]].concat();
     let mut tests = read_tests(&files, &reading)?;
-    Group::check_alike(&tests)?;
+    Group::check(&tests)?;
     let others = tests.split_off(arguments.data.len());
     let fitted = |tests: &[TestData]| Group::new(arguments.law, tests, &settings);
     let mut groups = vec![fitted(&tests)?];
@@ -167,8 +167,7 @@ fn message(groups: &[NamedGroup]) -> String {
             values(&entry.mean.parameters)
         );
     }
-    let last_axis = groups[0].states.iter().map(|state| state.axis).max();
-    let axes = last_axis.map_or(1, |last| last + 1);
+    let axes = groups[0].group.tests[0].axes.len();
     let steps = usize::from(Group::STEPS);
     // The middle and the end of each protocol.
     let rows = (0..groups[0].states.len()).filter(|row| {

@@ -23,6 +23,25 @@ pub struct Group {
     pub tests: Vec<TestData>,
 }
 
+/// The kind of a test, its axes and the sign of its strain, in words.
+fn kind(test: &TestData) -> String {
+    let axes: Vec<String> = test
+        .axes
+        .iter()
+        .map(|axis| (axis + 1).to_string())
+        .collect();
+    let sign = if farthest(test.farthest_strains()) < 0.0 {
+        "negative"
+    } else {
+        "positive"
+    };
+    format!(
+        "{} with {sign} strains, stressed along axis {}",
+        test.test.name(),
+        axes.join(" and ")
+    )
+}
+
 /// A state at which the stresses of specimens are averaged.
 #[derive(Clone, Copy, Debug)]
 pub struct GroupState {
@@ -38,18 +57,42 @@ impl Group {
     /// Strains of each protocol at which stresses are averaged.
     pub const STEPS: u8 = 20;
 
+    /// Checks that tests, of one group or of two, have one measure, one kind, the same axes and one sign of the strain.
+    ///
+    /// # Errors
+    /// [`Error::Input`] where they do not, or where there are none.
+    pub fn check(tests: &[TestData]) -> Result<(), Error> {
+        check_measures(tests)?;
+        let first = &tests[0];
+        let Some(other) = tests.iter().find(|test| kind(test) != kind(first)) else {
+            return Ok(());
+        };
+        let message = format!(
+            "{} is a test of another kind than {}: {} and {}",
+            other.name,
+            first.name,
+            kind(other),
+            kind(first)
+        );
+        Err(Error::input(
+            message,
+            "compare specimens by tests of one kind",
+        ))
+    }
+
     /// Fits a law to the test of each specimen.
     ///
     /// # Errors
-    /// [`Error::Input`] for fewer than two specimens; those of [`Group::check_alike`]; as [`fit`] for each.
+    /// As [`Self::check`]; [`Error::Input`] for fewer than two specimens; as [`fit`] for each.
     pub fn new(
         law: &'static Law,
         tests: &[TestData],
         settings: &FitSettings,
     ) -> Result<Self, Error> {
-        Self::check_alike(tests)?;
+        Self::check(tests)?;
+        let first = &tests[0];
         if tests.len() < 2 {
-            let message = format!("{} alone is no group", tests[0].name);
+            let message = format!("{} alone is no group", first.name);
             let hint = "how much specimens differ takes two at least, each in a file of its own";
             return Err(Error::input(message, hint));
         }
@@ -66,44 +109,25 @@ impl Group {
         })
     }
 
-    /// Refuses tests whose stresses cannot be compared, of one group or of two.
-    ///
-    /// # Errors
-    /// [`Error::Input`] with two tests of different stress measures, of different kinds, or one pulled and one pressed.
-    pub fn check_alike(tests: &[TestData]) -> Result<(), Error> {
-        check_measures(tests)?;
-        let kind = |test: &TestData| {
-            let is_pressed = farthest_strain(test, 0) < 0.0;
-            let pressed = if is_pressed { " in compression" } else { "" };
-            format!("{}{pressed}", test.test.name())
+    /// The strains farthest from rest along both axes that all specimens reached, and those of another group.
+    fn reached(&self, other: Option<&Self>) -> [f64; 2] {
+        let tests = || {
+            self.tests
+                .iter()
+                .chain(other.into_iter().flat_map(|other| &other.tests))
         };
-        let first = &tests[0];
-        let Some(other) = tests.iter().find(|test| kind(test) != kind(first)) else {
-            return Ok(());
-        };
-        let message = format!(
-            "{} is a test of another kind than {}: {} and {}",
-            other.name,
-            first.name,
-            kind(other),
-            kind(first)
-        );
-        let hint = "compare specimens by tests of one kind";
-        Err(Error::input(message, hint))
-    }
-
-    /// The strains along both axes, farthest from rest, that all specimens reached.
-    fn reached(&self) -> [f64; 2] {
         [0, 1].map(|axis| {
-            let reached = self.tests.iter().map(|test| farthest_strain(test, axis));
-            reached.reduce(nearer).unwrap_or_default()
+            let reached = tests().map(|test| test.farthest_strains()[axis]);
+            let least = reached.min_by(|a, b| a.abs().total_cmp(&b.abs()));
+            least.unwrap_or(0.0)
         })
     }
 
-    /// The states at which stresses are compared: for biaxial tests, protocols in three ratios of the largest strains.
-    fn positions(reached: [f64; 2], test: Test) -> Vec<Observation> {
+    /// The states at which stresses are compared, along the axes of a test: for biaxial ones, protocols in three ratios of the largest
+    /// strains.
+    fn positions(reached: [f64; 2], test: &TestData) -> Vec<Observation> {
         const RATIOS: [[f64; 2]; 3] = [[1.0, 1.0], [1.0, 0.5], [0.5, 1.0]];
-        let ratios = match test {
+        let ratios = match test.test {
             Test::Biaxial => &RATIOS[..],
             _ => &RATIOS[..1],
         };
@@ -114,13 +138,12 @@ impl Group {
                 [0, 1].map(|axis| share * ratio[axis] * reached[axis])
             })
         };
-        let axes = if test == Test::Biaxial { 0..2 } else { 0..1 };
         let strains = ratios.iter().flat_map(steps);
         strains
             .flat_map(|strains| {
-                axes.clone().map(move |axis| Observation {
+                test.axes.iter().map(move |axis| Observation {
                     strains,
-                    axis,
+                    axis: *axis,
                     stress: 0.0,
                 })
             })
@@ -129,12 +152,7 @@ impl Group {
 
     /// The stresses of the group where all specimens of this and of another group have been.
     pub fn states(&self, other: Option<&Self>) -> Vec<GroupState> {
-        let mut reached = self.reached();
-        if let Some(other) = other {
-            let of_other = other.reached();
-            reached = [0, 1].map(|axis| nearer(reached[axis], of_other[axis]));
-        }
-        let positions = Self::positions(reached, self.tests[0].test);
+        let positions = Self::positions(self.reached(other), &self.tests[0]);
         let of_fit = |(fit, test): (&Fit, &TestData)| -> Vec<[f64; 2]> {
             let halves = fit.half_widths(test, &positions).into_iter();
             let pairs = positions.iter().zip(halves);
@@ -200,22 +218,13 @@ impl Group {
     }
 }
 
-/// The strain along an axis that is farthest from rest.
-fn farthest_strain(test: &TestData, axis: usize) -> f64 {
-    farthest(test.observations.iter().map(|one| one.strains[axis]))
-}
-
-/// The one of two strains that is nearer to rest.
-fn nearer(one: f64, other: f64) -> f64 {
-    if one.abs() <= other.abs() { one } else { other }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::calibration::tests::biaxial::record;
-    use crate::calibration::tests::helpers::law;
-    use crate::document::Statements;
+    use crate::calibration::tests::helpers::{law, parsed};
+    use crate::calibration::{Conversion, StrainColumn};
+    use crate::material::parameters::StressMeasure;
 
     /// The parameters of a specimen.
     fn values(number: u32, mu: f64) -> [f64; 5] {
@@ -235,27 +244,88 @@ mod tests {
         Group::new(law, &tests, &FitSettings::default()).unwrap()
     }
 
-    /// At the strains that all of them reached, which are negative.
+    fn uniaxial(c10: f64, stretch: f64) -> f64 {
+        2.0 * c10 * (stretch - stretch.powi(-2))
+    }
+
+    fn equibiaxial(c10: f64, stretch: f64) -> f64 {
+        2.0 * c10 * (stretch - stretch.powi(-5))
+    }
+
+    /// Specimens with C₁₀ of 0.05 and 0.07 MPa that are pressed, pulled along the second axis, or stressed along both.
     #[test]
-    fn pressed_specimens_are_averaged_where_all_have_been() {
-        let specimen = |name: &str, c10: f64, last: i32| {
-            let rows = (0..=last).map(|row| {
-                let stretch = 1.0 - 0.02 * f64::from(row);
-                let stress = 2.0 * c10 * (stretch - stretch.powi(-2));
-                format!("{stretch},{stress}\n")
-            });
-            let head = "# test: uniaxial\nstretch [-],nominal_stress [MPa]";
-            let text = format!("{head}\n{}", rows.collect::<String>());
-            TestData::parse(name, &text, &Statements::new()).unwrap()
-        };
-        let tests = [specimen("a.csv", 0.09, 10), specimen("b.csv", 0.11, 20)];
-        let law = Law::named("neo-hooke").unwrap();
-        let group = Group::new(law, &tests, &FitSettings::default()).unwrap();
-        let states = group.states(None);
-        let last = states[states.len() - 1];
-        assert!((last.strains[0] + 0.2).abs() < 1e-9, "{last:?}");
-        let right = 2.0 * 0.1 * (0.8 - 0.8_f64.powi(-2));
-        assert!((last.stress.mean / right - 1.0).abs() < 1e-3, "{last:?}");
+    fn means_are_those_at_the_strains_and_along_the_axes_of_the_tests() {
+        let cases: [(&str, fn(f64, f64) -> f64, f64, usize); 3] = [
+            (
+                "compression\nstretch [-],nominal_stress [MPa]",
+                uniaxial,
+                0.6,
+                1,
+            ),
+            (
+                "uniaxial; direction: 2\nstretch [-],nominal_stress [MPa]",
+                uniaxial,
+                1.5,
+                1,
+            ),
+            (
+                "equibiaxial\nstretch [-],nominal_stress_1 [MPa],nominal_stress_2 [MPa]",
+                equibiaxial,
+                1.5,
+                2,
+            ),
+        ];
+        for (head, stress, last, columns) in cases {
+            let specimen = |c10: f64| {
+                let row = |step: i32| {
+                    let stretch = 1.0 + (last - 1.0) * f64::from(step) / 20.0;
+                    let stresses = format!(",{}", stress(c10, stretch)).repeat(columns);
+                    format!("{stretch}{stresses}\n")
+                };
+                let rows: String = (1..=20).map(row).collect();
+                parsed(&format!("# test: {head}\n{rows}"))
+            };
+            let law = Law::named("neo-hooke").unwrap();
+            let tests = [0.05, 0.07].map(specimen);
+            let group = Group::new(law, &tests, &FitSettings::default()).unwrap();
+            let states = group.states(None);
+            let conversion = Conversion {
+                stress: StressMeasure::Nominal,
+                strain: StrainColumn::Stretch,
+                unit: "MPa".to_owned(),
+            };
+            let text = conversion.table(&group.mean_test("mean", &states)).unwrap();
+            let mean = parsed(&text);
+            assert_eq!(mean.observations.len(), 20 * columns, "{text}");
+            assert!((mean.observations[20 * columns - 1].strain() - (last - 1.0)).abs() < 1e-12);
+            for one in &mean.observations {
+                let expected = stress(0.06, 1.0 + one.strain());
+                assert!((one.stress / expected - 1.0).abs() < 1e-4, "{text}");
+            }
+        }
+    }
+
+    #[test]
+    fn tests_of_another_axis_sign_or_measure_are_refused() {
+        let head = "stretch [-],nominal_stress [MPa]\n";
+        let pulled = parsed(&format!("# test: uniaxial\n{head}1.1,0.1\n1.2,0.2\n"));
+        for (text, message) in [
+            (
+                format!("# test: uniaxial; direction: 2\n{head}1.1,0.1\n1.2,0.2\n"),
+                "stressed along axis 2",
+            ),
+            (
+                format!("# test: compression\n{head}0.9,-0.1\n0.8,-0.2\n"),
+                "negative strains",
+            ),
+            (
+                "# test: uniaxial\nstretch [-],cauchy_stress [MPa]\n1.1,0.1\n1.2,0.2\n".to_owned(),
+                "cauchy stress",
+            ),
+        ] {
+            let fault = Group::check(&[pulled.clone(), parsed(&text)]).unwrap_err();
+            assert!(fault.to_string().contains(message), "{fault}");
+        }
     }
 
     /// The mean stress of three specimens, their spread, and what stiffer matrices add.

@@ -6,7 +6,6 @@ use super::chart::stress_chart;
 use super::{Axis, Drawing, Line, PALETTE, Stroke};
 use crate::calibration::{Fit, Group, GroupState};
 use crate::document::write_records;
-use crate::statistics::farthest;
 
 /// A group with its name, its states and its mean law.
 pub struct NamedGroup {
@@ -89,18 +88,20 @@ pub fn group_json(groups: &[NamedGroup]) -> Value {
 
 /// The mean stresses along both axes of the first protocol with their 95 % bands, and dashed by how much specimens differ.
 pub fn group_picture(groups: &[NamedGroup]) -> Drawing {
-    let axes = groups[0].states.iter().map(|state| state.axis).max();
-    let axes = 0..=axes.unwrap_or(0);
-    let states = || groups.iter().flat_map(|group| &group.states);
-    let highest = farthest(states().flat_map(|state| state.stress.estimate().interval)).abs();
-    let count = axes.clone().count();
-    let charts = axes.map(|axis| {
+    let test = &groups[0].group.tests[0];
+    let measure = format!("{} stress", test.stress_measure.title());
+    let states = groups.iter().flat_map(|group| &group.states);
+    let ends = states.flat_map(|state| state.stress.estimate().interval);
+    let highest = ends.map(f64::abs).fold(0.0, f64::max);
+    let count = test.axes.len();
+    let charts = test.axes.iter().map(|axis| {
+        let axis = *axis;
         let lines = curves(groups, axis);
         let title = match count {
             1 => format!("mean of specimens, {}", groups[0].mean.law.name),
             _ => format!("mean of specimens along axis {}, both axes alike", axis + 1),
         };
-        let chart = stress_chart(title, Axis::stretch(), "nominal stress", highest, lines);
+        let chart = stress_chart(title, Axis::stretch(), &measure, highest, lines);
         (chart, 380)
     });
     Drawing::Charts(charts.collect())
@@ -113,7 +114,12 @@ fn curves(groups: &[NamedGroup], axis: usize) -> Vec<Line> {
         let along = group.states.iter().filter(|state| state.axis == axis);
         let protocol: Vec<&GroupState> = along.take(Group::STEPS.into()).collect();
         let curve = |value: &dyn Fn(&GroupState) -> f64| {
-            let point = |state: &&GroupState| [1.0 + state.strains[axis], value(state)];
+            // Across a planar test the sheet has no strain.
+            let point = |state: &&GroupState| {
+                let [along, other] = [axis, 1 - axis].map(|axis| state.strains[axis]);
+                let strain = if along == 0.0 { other } else { along };
+                [1.0 + strain, value(state)]
+            };
             let points = protocol.iter().map(point);
             [[1.0, 0.0]].into_iter().chain(points).collect::<Vec<_>>()
         };

@@ -200,6 +200,11 @@ impl TestData {
         stresses.fold(0.0, f64::max)
     }
 
+    /// The strains farthest from rest along both axes.
+    pub(in crate::calibration) fn farthest_strains(&self) -> [f64; 2] {
+        Observation::farthest_strains(&self.observations)
+    }
+
     /// The largest strain along an axis.
     pub(in crate::calibration) fn reached(&self, axis: usize) -> f64 {
         let strains = self.observations.iter().map(|one| one.strains[axis]);
