@@ -183,6 +183,8 @@ impl Part {
             .iter()
             .take_while(|x| (**x - self.zero) * direction < 0.0)
             .count();
+        // By rounding, a zero at the last row may lie behind it.
+        let before = before.min(x.len() - 1);
         if self.zero != 0.0 && self.rows.start <= loading.start {
             self.rows.start = loading.start + before;
         }

@@ -27,6 +27,20 @@ fn rows_that_are_cut_within_a_cycle_have_the_loading_branches_that_are_whole() {
     );
 }
 
+/// The displacements of the last two rows over the length, interpolated, exceed the last one by rounding.
+#[test]
+fn a_zero_at_the_last_row_leaves_that_row_or_is_refused() {
+    let text = "Displacement [mm],Force [N]\n0,0\n0.02,0.1\n0.05,0.2\n0.48,1\n";
+    let stated = [
+        ("test", "uniaxial"),
+        ("length", "50 mm"),
+        ("area", "10 mm^2"),
+        ("zero", "0.48 mm"),
+    ];
+    let rows = read(text, &stated).map(|data| data.observations.len());
+    assert!(rows.is_err() || rows == Ok(1), "{rows:?}");
+}
+
 /// Some programs write what was measured last into the first line.
 #[test]
 fn rows_whose_times_decrease_are_read_from_the_last_to_the_first() {
