@@ -6,7 +6,7 @@ use super::cycles::{PRECONDITIONED, SPECIMEN_NAME};
 use super::strain_column::StrainColumn;
 use super::test_data::{Test, TestData};
 use crate::error::Error;
-use crate::material::parameters::StressMeasure;
+use crate::material::parameters::{StrainMeasure, StressMeasure};
 use crate::units::{self, Dimension};
 
 /// The form in which test data are written.
@@ -31,7 +31,8 @@ const KEPT: [&str; 6] = [
 ];
 
 impl Conversion {
-    /// The data as a table that `gelbench materials fit` reads.
+    /// The data as a table that `gelbench materials fit` reads. In simple shear, γ and the shear stress have one measure, whichever is asked
+    /// for.
     ///
     /// # Errors
     /// [`Error::Input`] when the unit is not a unit of stress, or when the file has times that cannot be read.
@@ -63,17 +64,24 @@ impl Conversion {
         };
         let _ = writeln!(text, "# test: {}{direction}", data.test.name());
         let _ = writeln!(text, "{}", self.names(data, times.is_some()).join(","));
+        let (strain, stress) = match data.test {
+            Test::SimpleShear => (
+                StrainColumn::Strain(StrainMeasure::Nominal),
+                StressMeasure::Nominal,
+            ),
+            _ => (self.strain, self.stress),
+        };
         for (index, row) in data.observations.chunks(axes.len()).enumerate() {
             let along = match data.test {
                 Test::Uniaxial | Test::SimpleShear => vec![row[0].strain()],
                 Test::Biaxial => row[0].strains.to_vec(),
                 _ => vec![row[0].strains[0]],
             };
-            let strains = along.into_iter().map(|x| self.strain.of_nominal(x));
+            let strains = along.into_iter().map(|x| strain.of_nominal(x));
             let stresses = row.iter().map(|one| {
                 let x = one.strain();
                 let nominal = data.stress_measure.to_nominal(one.stress, x);
-                self.stress.of_nominal(nominal, x) / factor
+                stress.of_nominal(nominal, x) / factor
             });
             let time = times.map(|times| times[index * axes.len()]);
             let values = time.into_iter().chain(strains).chain(stresses);
@@ -84,7 +92,9 @@ impl Conversion {
     }
 
     fn names(&self, data: &TestData, has_times: bool) -> Vec<String> {
+        let is_sheared = data.test == Test::SimpleShear;
         let strain = match self.strain {
+            _ if is_sheared => "shear_strain".to_owned(),
             StrainColumn::Stretch => "stretch".to_owned(),
             StrainColumn::Strain(measure) => format!("{}_strain", measure.name()),
             StrainColumn::GreenLagrange => "green_lagrange_strain".to_owned(),
@@ -106,7 +116,12 @@ impl Conversion {
         let mut names = Vec::new();
         names.extend(has_times.then(|| "time [s]".to_owned()));
         names.extend(numbered(&strain, "-", along));
-        let stress = format!("{}_stress", self.stress.name());
+        let measure = if is_sheared {
+            "shear"
+        } else {
+            self.stress.name()
+        };
+        let stress = format!("{measure}_stress");
         names.extend(numbered(&stress, &self.unit, &data.axes));
         names
     }
@@ -116,7 +131,6 @@ impl Conversion {
 mod tests {
     use super::*;
     use crate::calibration::tests::helpers::{parsed, uniaxial};
-    use crate::material::parameters::StrainMeasure;
 
     /// Nominal to Cauchy, logarithmic and kPa, and back.
     #[test]
@@ -158,6 +172,18 @@ mod tests {
                 assert!((one.stress - other.stress).abs() < 1e-15);
             }
         }
+    }
+
+    #[test]
+    fn shear_stays_what_it_is_in_every_measure() {
+        let text = "# test: simple-shear\nshear_strain [-],shear_stress [MPa]\n0.25,0.5\n0.5,1\n";
+        let data = parsed(text);
+        let conversion = Conversion {
+            stress: StressMeasure::Cauchy,
+            strain: StrainColumn::Stretch,
+            unit: "MPa".into(),
+        };
+        assert_eq!(conversion.table(&data).unwrap(), text);
     }
 
     #[test]
