@@ -8,5 +8,5 @@ mod zero;
 
 pub use elastic::Elastic;
 pub use misfit::{Estimated, Misfit, Response, Row, Rows};
-pub use search::{Rival, Search, improved, ordered};
+pub use search::{Rival, Search, holds, improved, ordered};
 pub use zero::{MovedZero, Zero};

@@ -59,7 +59,8 @@ pub fn fit_relaxation(
     }
     .checked(law, &parameters)?
     .settled();
-    let mut fit = solution.fit(law, &parameters, settings, None);
+    let further = TERM_KEYS[(parameters.len() - of_law) / 2..].as_flattened();
+    let mut fit = solution.fit(law, &parameters, &settings.without(further), None);
     let mut material = solution.misfit.response.material(&solution.values);
     material.covered = Covered {
         times: Some(resolved.map(without_rounding)),
@@ -99,17 +100,22 @@ fn best_series<'a>(
     let mut laws = vec![elastic.parameters.iter().map(|one| one.value).collect()];
     let mut best: Option<Series> = None;
     let mut tried = Vec::new();
-    for terms in terms.tried() {
-        let parameters = parameters(&elastic.parameters, terms, resolved);
+    for number in terms.tried() {
+        let parameters = parameters(&elastic.parameters, number, resolved);
         if misfit.count() <= parameters.len() + 1 {
             break;
         }
         let scale = elastic.fitted.youngs_modulus();
+        // While terms are counted, bounds of further ones wait for a longer series.
+        let stated = match terms {
+            Terms::Automatic => settings.without(TERM_KEYS[number..].as_flattened()),
+            Terms::Exactly(_) => settings.clone(),
+        };
         let bounds = limits(
             elastic.law,
             misfit.response.tests,
             &parameters,
-            &settings.bounds,
+            &stated.bounds,
             scale,
         )?;
         let bounds = transformed(bounds, of_law);
@@ -124,7 +130,7 @@ fn best_series<'a>(
             bounds,
         };
         let criterion = solution.judged().aicc();
-        tried.push((terms, criterion));
+        tried.push((number, criterion));
         let is_worse = |known: &Series| criterion.total_cmp(&known.criterion).is_lt();
         if best.as_ref().is_none_or(is_worse) {
             best = Some(Series {

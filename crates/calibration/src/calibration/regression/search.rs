@@ -231,7 +231,7 @@ pub fn ordered(parameters: &[Parameter], bounds: &[[f64; 2]], values: Vec<f64>) 
 }
 
 /// Whether values lie within their bounds.
-fn holds(bounds: &[[f64; 2]], values: &[f64]) -> bool {
+pub fn holds(bounds: &[[f64; 2]], values: &[f64]) -> bool {
     let mut pairs = values.iter().zip(bounds);
     pairs.all(|(value, [low, high])| (low..=high).contains(&value))
 }

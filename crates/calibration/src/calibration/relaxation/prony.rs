@@ -14,12 +14,13 @@ use nalgebra::{DMatrix, DVector};
 use super::history::{History, State};
 use crate::calibration::data::TestData;
 use crate::calibration::least_squares::descend;
-use crate::calibration::regression::{Misfit, Response, Row, improved, ordered};
+use crate::calibration::regression::{Misfit, Response, Row, holds, improved, ordered};
 use crate::calibration::settings::MEASURE;
 use crate::material::HyperelasticLaw;
 use crate::material::parameters::Parameter;
 use crate::material::registry::Law;
 use crate::material::viscosity::{Relaxation, ViscousMaterial};
+use crate::statistics::extremes;
 
 /// Relaxation times on the grid: their number in a decade, and the limits of their number.
 const IN_A_DECADE: f64 = 4.0;
@@ -152,9 +153,13 @@ impl Misfit<Viscous<'_>> {
             .next()?;
         let mut values = descend(self, &best, bounds).unwrap_or(best);
         let of_law = self.response.of_law;
-        // Terms stand in the order of their times.
-        let (terms, _) = values[of_law..].as_chunks_mut::<2>();
+        // Terms stand in the order of their times, where bounds allow it.
+        let mut sorted = values.clone();
+        let (terms, _) = sorted[of_law..].as_chunks_mut::<2>();
         terms.sort_by(|a, b| a[1].total_cmp(&b[1]));
+        if holds(bounds, &sorted) {
+            values = sorted;
+        }
         Some(ordered(&parameters[..of_law], bounds, values))
     }
 
@@ -165,7 +170,8 @@ impl Misfit<Viscous<'_>> {
         if terms == 0 {
             return vec![law.to_vec()];
         }
-        let [low, high] = bounds[of_law + 1];
+        let times = bounds[of_law..].iter().skip(1).step_by(2).flatten();
+        let [low, high] = extremes(times.copied());
         let decades = (high - low) / std::f64::consts::LN_10;
         let count = ((IN_A_DECADE * decades) as usize)
             .clamp(GRID[0], GRID[1])

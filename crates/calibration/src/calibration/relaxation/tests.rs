@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use super::*;
 use crate::assertions::assert_contains;
-use crate::calibration::tests::helpers::{assert_parameters, law, parsed, uniaxial};
+use crate::calibration::tests::helpers::{assert_parameters, bounded, law, parsed, uniaxial};
 use crate::calibration::*;
 use crate::material::Card;
 use crate::material::registry::Law;
@@ -218,6 +218,19 @@ fn terms_are_as_many_as_there_are() {
         "{:?}",
         elastic.relaxed.unwrap().tried
     );
+}
+
+/// The time of one term is stated: the others are sought at all times, also while terms are counted.
+#[test]
+fn a_term_with_bounds_of_its_own_leaves_the_others_free() {
+    let tests = [ramp_and_hold(2e-5, 0.0, 3)];
+    let settings = bounded("relaxation.1.time", [TRUTH[2]; 2]);
+    for terms in [Terms::Exactly(2), Terms::Automatic] {
+        let law = Law::named("neo-hooke").unwrap();
+        let fit = fit_relaxation(law, &tests, &settings, terms).unwrap();
+        assert_eq!(fit.parameters.len(), TRUTH.len());
+        assert_parameters(&fit, &TRUTH, 0.05);
+    }
 }
 
 /// 45 % of the stress relaxes; noise of half a percent of the largest stress leaves few independent points, whose AICc could not judge.
