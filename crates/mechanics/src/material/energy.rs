@@ -37,9 +37,37 @@ pub struct EnergyOfInvariants(Expression);
 #[derive(Clone, Debug)]
 pub struct EnergyOfStrains(Expression);
 
+/// The most operators and brackets of a formula, and the most brackets within one another: each is a call within the one before.
+const MOST: [usize; 2] = [300, 40];
+
+/// Why a formula is too long to be read, if it is.
+fn too_long(text: &str) -> Option<String> {
+    let count = text.matches(['+', '-', '*', '/', '^', '(']).count();
+    let (mut depth, mut deepest) = (0_usize, 0_usize);
+    for letter in text.chars() {
+        match letter {
+            '(' => depth += 1,
+            ')' => depth = depth.saturating_sub(1),
+            _ => {}
+        }
+        deepest = deepest.max(depth);
+    }
+    let [most, most_deep] = MOST;
+    (count > most || deepest > most_deep).then(|| {
+        format!(
+            "has {count} operators and brackets, {deepest} of which are within one another; {most} and {most_deep} are read"
+        )
+    })
+}
+
 /// Reads the formula of a card.
 pub fn from_card(parameters: &Parameters) -> Box<dyn HyperelasticLaw> {
     let text = parameters.text("energy");
+    let unread = || Box::new(EnergyOfInvariants(Expression::Number(f64::NAN)));
+    if let Some(message) = too_long(&text) {
+        parameters.fault("energy", &message, "write it with fewer terms");
+        return unread();
+    }
     let formula = match Expression::parse(&text, &VARIABLES) {
         Ok(formula) => formula,
         Err(fault) => {
@@ -52,7 +80,7 @@ pub fn from_card(parameters: &Parameters) -> Box<dyn HyperelasticLaw> {
                 format!("has {open} opening and {closed} closing brackets")
             };
             parameters.fault("energy", &message, &hint());
-            return Box::new(EnergyOfInvariants(Expression::Number(f64::NAN)));
+            return unread();
         }
     };
     let is_directed = (2..VARIABLES.len()).any(|variable| formula.has(variable));
@@ -125,5 +153,18 @@ impl AnisotropicLaw for EnergyOfStrains {
 
     fn is_isotropic(&self) -> bool {
         false
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn formulas_that_no_stack_holds_are_refused_before_they_are_read() {
+        let deep = format!("{}I1{}", "(".repeat(100_000), ")".repeat(100_000));
+        let long = format!("I1{}", " + I1".repeat(100_000));
+        assert!(too_long(&deep).is_some() && too_long(&long).is_some());
+        assert_eq!(too_long("0.02*(I1 - 3) + expm1((C11 - 1)^2)"), None);
     }
 }
