@@ -46,10 +46,13 @@ pub fn fit_relaxation(
     let histories = History::all(tests, true)?;
     let elastic = elastic(law, tests, settings)?;
     let of_law = elastic.of_law;
-    let misfit = Misfit::new(
-        Viscous::new(law, of_law, tests, histories),
-        settings.weighting,
-    );
+    let response = Viscous {
+        law,
+        of_law,
+        tests,
+        histories,
+    };
+    let misfit = Misfit::new(response, settings.weighting);
     let resolved = resolved(&misfit.response.histories)?;
     let (series, tried) = best_series(&misfit, &elastic, settings, terms, resolved)?;
     let parameters = series.parameters;

@@ -6,6 +6,7 @@ use super::cycles::{Branches, CYCLE, Cycle};
 use super::row_choice::ROWS;
 use super::zero::{Beginning, FoundZero};
 use crate::document::{Faulty, Head};
+use crate::statistics::farthest;
 use crate::units::{self, Dimension};
 
 /// The key of the displacement or force at which stretching begins, in a file or on the command line.
@@ -217,7 +218,7 @@ impl Part {
     /// Subtracts the offsets that were found at the beginning of a branch with these stresses, and records a remark.
     fn set_right(&mut self, machine: Machine, beginning: Beginning, stresses: &[f64]) {
         let mm = |strain: f64| machine.length * strain;
-        let largest = stresses.iter().fold(0.0, |most: f64, y| most.max(y.abs()));
+        let largest = farthest(stresses.iter().copied()).abs();
         let force = |stress: f64| {
             let percent = 100.0 * (stress / largest).abs();
             let newton = machine.area * stress;

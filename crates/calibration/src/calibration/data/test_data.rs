@@ -9,7 +9,7 @@ use crate::material::HyperelasticLaw;
 use crate::material::curve::simple_shear;
 use crate::material::parameters::StressMeasure;
 use crate::material::sheet::{Kinematics, PlaneTensor};
-use crate::statistics::farthest;
+use crate::statistics::{extremes, farthest};
 
 /// The kinds of test of a sheet.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -62,8 +62,7 @@ impl Loaded {
 
     /// Of the strains of a test; those that are not known are left out.
     pub fn of(strains: impl Iterator<Item = f64>) -> Self {
-        let bounds = |[low, high]: [f64; 2], x: f64| [low.min(x), high.max(x)];
-        let [low, high] = strains.fold([0.0; 2], bounds);
+        let [low, high] = extremes(strains.chain([0.0]));
         match (-low <= Self::NOISE * high, high <= -Self::NOISE * low) {
             (true, _) => Self::Stretched,
             (_, true) => Self::Pressed,
@@ -324,12 +323,9 @@ impl TestData {
             let stretch = half + half.hypot(1.0);
             return [1.0 / stretch, stretch];
         }
-        let strains = || self.observations.iter().flat_map(|one| one.strains);
-        // f64::min and f64::max ignore strains that are not known.
-        [
-            1.0 + strains().fold(0.0, f64::min),
-            1.0 + strains().fold(0.0, f64::max),
-        ]
+        let strains = self.observations.iter().flat_map(|one| one.strains);
+        // Strains that are not known are ignored.
+        extremes(strains.chain([0.0])).map(|strain| 1.0 + strain)
     }
 
     /// States along the data of one axis, from the smallest to the largest strain with rest between or at an

@@ -112,7 +112,7 @@ impl Beginning {
     pub fn of(strains: &[f64], stresses: &[f64]) -> Self {
         /// Share of the strains up to which they begin at zero.
         const NEAR: f64 = 0.05;
-        let largest = stresses.iter().fold(0.0, |most: f64, y| most.max(y.abs()));
+        let largest = farthest(stresses.iter().copied()).abs();
         let is_unloaded = match Self::search(strains, stresses) {
             Some(Self::Clean) => true,
             Some(shown) => return shown,

@@ -33,7 +33,8 @@ pub const MOST_SHARED: f64 = 0.999;
 /// A law with a Prony series over some histories. Values are those of the law, then share and ln time in s of each term.
 #[derive(Clone)]
 pub struct Viscous<'a> {
-    law: &'static Law,
+    /// The law.
+    pub law: &'static Law,
     /// How many values the law has.
     pub of_law: usize,
     /// The tests.
@@ -42,22 +43,7 @@ pub struct Viscous<'a> {
     pub histories: Vec<History>,
 }
 
-impl<'a> Viscous<'a> {
-    /// A law with `of_law` parameters.
-    pub fn new(
-        law: &'static Law,
-        of_law: usize,
-        tests: &'a [TestData],
-        histories: Vec<History>,
-    ) -> Self {
-        Self {
-            law,
-            of_law,
-            tests,
-            histories,
-        }
-    }
-
+impl Viscous<'_> {
     /// The Prony series of some values.
     pub fn material(&self, values: &[f64]) -> ViscousMaterial {
         let (terms, _) = values[self.of_law..].as_chunks::<2>();

@@ -183,11 +183,7 @@ pub fn stable_ranges(law: &dyn HyperelasticLaw, tests: &[TestData]) -> Vec<Stabl
 
 /// The stretches between which the data of some tests lie.
 pub fn stretch_range<'a>(tests: impl Iterator<Item = &'a TestData>) -> [f64; 2] {
-    tests
-        .map(TestData::stretch_range)
-        .fold([1.0, 1.0], |all, one| {
-            [all[0].min(one[0]), all[1].max(one[1])]
-        })
+    extremes(tests.flat_map(TestData::stretch_range).chain([1.0]))
 }
 
 /// The usual tests that no data cover.
