@@ -8,15 +8,13 @@ use std::fmt;
 mod dimension;
 mod figures;
 mod linear;
-mod ranges;
 mod remedy;
 mod sheet_size;
 
-pub use dimension::Dimension;
 use dimension::{CELSIUS, UNITS};
+pub use dimension::{Dimension, SIZES, on_the_end};
 pub use figures::{brief, decimals, extents, number};
 pub use linear::{Linear, LinearFault, parse_linear_length};
-pub use ranges::{SIZES, on_the_end};
 pub use remedy::{RareUnit, bare_ratio, could_be_stretch_ratios, rare, symbol};
 pub use sheet_size::implausible_sheet;
 
