@@ -3,69 +3,61 @@
 use super::{Dimension, QuantityFault, UNITS, normalised, number_length, parse};
 use crate::error::nearest;
 
-/// Other names and spellings of units, in lower case.
-const SPELLINGS: &[(&str, &[&str])] = &[
-    (
-        "mm",
-        &["millimetre", "millimeter", "millimetres", "millimeters"],
-    ),
-    (
-        "cm",
-        &["centimetre", "centimeter", "centimetres", "centimeters"],
-    ),
-    ("m", &["metre", "meter", "metres", "meters"]),
+/// Other names and spellings of units, in lower case, with bars between them.
+const SPELLINGS: &[(&str, &str)] = &[
+    ("mm", "millimetre|millimeter|millimetres|millimeters"),
+    ("cm", "centimetre|centimeter|centimetres|centimeters"),
+    ("m", "metre|meter|metres|meters"),
     (
         "µm",
-        &[
-            "micron",
-            "microns",
-            "micrometre",
-            "micrometer",
-            "micrometres",
-            "micrometers",
-        ],
+        "micron|microns|micrometre|micrometer|micrometres|micrometers",
     ),
-    ("in", &["inch", "inches", "\"", "″", "zoll"]),
-    ("ft", &["foot", "feet"]),
-    ("mm^2", &["mm2", "sqmm", "square mm"]),
-    ("cm^2", &["cm2", "sqcm", "square cm"]),
-    ("m^2", &["m2"]),
-    ("N", &["newton", "newtons"]),
-    ("gf", &["grams-force", "gram-force", "pond"]),
-    ("µN", &["un", "micronewton", "micronewtons"]),
-    ("kgf", &["kilogram-force", "kilopond", "kp"]),
-    ("kgf/cm^2", &["kp/cm^2", "kg/cm^2"]),
-    ("dyn", &["dyne", "dynes"]),
-    ("dyn/cm^2", &["dyne/cm^2"]),
-    ("K", &["kelvin"]),
-    ("mol/L", &["mol/l", "mol/dm^3", "mol/dm3", "m"]),
-    ("mmol/L", &["mmol/l", "mm"]),
-    ("lbf", &["lb", "lbs", "pound", "pounds", "pound-force"]),
-    ("Pa", &["pascal", "pascals"]),
-    ("N/mm^2", &["n/mm2"]),
-    ("N/m^2", &["n/m2"]),
-    ("mmHg", &["torr", "mm hg"]),
-    ("psi", &["lbf/in^2", "lbf/in2"]),
-    ("kg/m^3", &["kg/m3"]),
-    ("g/cm^3", &["g/cm3", "g/cc", "g/ml"]),
-    ("g", &["gram", "grams", "gramme", "grammes"]),
-    ("kg", &["kilogram", "kilograms", "kilo"]),
-    ("tonne", &["t", "ton", "tonnes"]),
-    ("s", &["sec", "secs", "second", "seconds"]),
-    ("ms", &["msec", "millisecond", "milliseconds"]),
-    ("min", &["minute", "minutes", "mins"]),
-    ("h", &["hr", "hrs", "hour", "hours"]),
-    ("Hz", &["hertz", "cycles/s", "s^-1"]),
-    ("m/s^2", &["m/s2", "m/s/s"]),
-    ("mm/s^2", &["mm/s2"]),
-    ("Pa·s", &["pas", "pa s", "pa.s", "pa-s"]),
-    ("mPa·s", &["cp", "cps", "centipoise"]),
-    ("rad", &["radian", "radians"]),
-    ("deg", &["degree", "degrees", "grad"]),
-    ("%", &["percent", "per cent", "prozent", "pct"]),
-    ("‰", &["permille", "per mille", "promille"]),
-    ("µε", &["ue", "microstrain", "microstrains", "micro strain"]),
+    ("in", "inch|inches|\"|″|zoll"),
+    ("ft", "foot|feet"),
+    ("mm^2", "mm2|sqmm|square mm"),
+    ("cm^2", "cm2|sqcm|square cm"),
+    ("m^2", "m2"),
+    ("N", "newton|newtons"),
+    ("gf", "grams-force|gram-force|pond"),
+    ("µN", "un|micronewton|micronewtons"),
+    ("kgf", "kilogram-force|kilopond|kp"),
+    ("kgf/cm^2", "kp/cm^2|kg/cm^2"),
+    ("dyn", "dyne|dynes"),
+    ("dyn/cm^2", "dyne/cm^2"),
+    ("K", "kelvin"),
+    ("mol/L", "mol/l|mol/dm^3|mol/dm3|m"),
+    ("mmol/L", "mmol/l|mm"),
+    ("lbf", "lb|lbs|pound|pounds|pound-force"),
+    ("Pa", "pascal|pascals"),
+    ("N/mm^2", "n/mm2"),
+    ("N/m^2", "n/m2"),
+    ("mmHg", "torr|mm hg"),
+    ("psi", "lbf/in^2|lbf/in2"),
+    ("kg/m^3", "kg/m3"),
+    ("g/cm^3", "g/cm3|g/cc|g/ml"),
+    ("g", "gram|grams|gramme|grammes"),
+    ("kg", "kilogram|kilograms|kilo"),
+    ("tonne", "t|ton|tonnes"),
+    ("s", "sec|secs|second|seconds"),
+    ("ms", "msec|millisecond|milliseconds"),
+    ("min", "minute|minutes|mins"),
+    ("h", "hr|hrs|hour|hours"),
+    ("Hz", "hertz|cycles/s|s^-1"),
+    ("m/s^2", "m/s2|m/s/s"),
+    ("mm/s^2", "mm/s2"),
+    ("Pa·s", "pas|pa s|pa.s|pa-s"),
+    ("mPa·s", "cp|cps|centipoise"),
+    ("rad", "radian|radians"),
+    ("deg", "degree|degrees|grad"),
+    ("%", "percent|per cent|prozent|pct"),
+    ("‰", "permille|per mille|promille"),
+    ("µε", "ue|microstrain|microstrains|micro strain"),
 ];
+
+/// Whether a text is one of some spellings.
+fn is_one(text: &str, spellings: &str) -> bool {
+    spellings.split('|').any(|known| known == text)
+}
 
 impl QuantityFault {
     /// What to write instead of `text`, where a quantity of a dimension is wanted.
@@ -149,7 +141,7 @@ pub fn symbol(unit: &str) -> Option<&'static str> {
     let spelled = || {
         SPELLINGS
             .iter()
-            .find(|(_, spellings)| spellings.contains(&&*lower))
+            .find(|(_, spellings)| is_one(&lower, spellings))
     };
     in_other_case
         .map(|(known, ..)| *known)
@@ -166,7 +158,7 @@ fn meant(unit: &str, dimension: Dimension) -> Option<&'static str> {
     };
     let spelled = SPELLINGS
         .iter()
-        .find(|(symbol, spellings)| of_dimension(symbol) && spellings.contains(&&*lower));
+        .find(|(symbol, spellings)| of_dimension(symbol) && is_one(&lower, spellings));
     // Signs of ratios are near to any other short unit.
     let is_word = |known: &&str| known.len() > 2 && dimension != Dimension::Ratio;
     let in_other_case = || {
@@ -180,8 +172,9 @@ fn meant(unit: &str, dimension: Dimension) -> Option<&'static str> {
         .or_else(|| nearest(unit, dimension.units().filter(is_word)))
         .or_else(|| {
             let words = SPELLINGS.iter().filter(|(symbol, _)| of_dimension(symbol));
-            let words = words
-                .flat_map(|(symbol, spellings)| spellings.iter().map(move |word| (*word, *symbol)));
+            let words = words.flat_map(|(symbol, spellings)| {
+                spellings.split('|').map(move |word| (word, *symbol))
+            });
             let words: Vec<_> = words.filter(|(word, _)| word.len() > 3).collect();
             let near = nearest(&lower, words.iter().map(|(word, _)| *word))?;
             words
@@ -323,7 +316,7 @@ mod tests {
         for (symbol, spellings) in SPELLINGS {
             let unit = UNITS.iter().find(|(known, ..)| known == symbol);
             let (_, dimension, _) = unit.unwrap_or_else(|| panic!("{symbol}"));
-            for spelling in *spellings {
+            for spelling in spellings.split('|') {
                 assert_eq!(meant(spelling, *dimension), Some(*symbol), "{spelling}");
             }
         }
