@@ -110,8 +110,9 @@ pub struct RareUnit {
 
 /// The unit of this name, where it is none that this field uses but one of other capitals is.
 pub fn rare(unit: &str) -> Option<RareUnit> {
-    let (dimension, factor, meaning, usual) = match unit {
+    let (dimension, factor, meaning, usual) = match &*normalised(unit) {
         "mPa" => (Dimension::Stress, 1e-9, "a thousandth of a Pa", "MPa"),
+        "mN/m^2" => (Dimension::Stress, 1e-9, "a thousandth of a Pa", "MN/m^2"),
         "MN" => (Dimension::Force, 1e6, "a million N", "mN"),
         _ => return None,
     };
@@ -225,6 +226,7 @@ mod tests {
             ("mPa", None),
             ("MN", None),
             ("MN/m2", Some("MN/m^2")),
+            ("mN/m²", None),
             ("kgf/cm^2", Some("kgf/cm^2")),
             ("Sec", Some("s")),
             ("S", Some("s")),
