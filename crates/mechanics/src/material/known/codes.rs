@@ -11,69 +11,16 @@ use crate::material::code::Code;
 use crate::material::volume::VolumeEnergy;
 use crate::units::{self, Dimension};
 
-/// What a name of another code stands for.
-#[derive(Clone, Copy)]
-enum Meaning {
-    /// A key of the card.
-    Key(&'static str),
-    /// D₁ = 2/κ.
-    Compliance,
-    /// κ.
-    BulkModulus,
-    /// E.
-    Young,
-    /// ν.
-    PoissonRatio,
-}
-use Meaning::{BulkModulus, Compliance, Key, PoissonRatio, Young};
+// A name of the code, and a key of the card; `E`, `K` and `nu` are moduli, and `2/K` is D₁.
+const ABAQUS_OGDEN: &str = "mu1=mu_1 alpha1=alpha_1 mu2=mu_2 alpha2=alpha_2 mu3=mu_3 alpha3=alpha_3 mu4=mu_4 alpha4=alpha_4 d1=2/K";
+const ABAQUS_POLYNOMIAL: &str = "c10=c10 c01=c01 c20=c20 c11=c11 c02=c02 c30=c30 d1=2/K";
+const ABAQUS_ARRUDA_BOYCE: &str = "mu=mu lambda_m=lambda_m d=2/K";
 
-type Names = &'static [(&'static str, Meaning)];
+const FEBIO_OGDEN: &str =
+    "c1=mu_1 m1=alpha_1 c2=mu_2 m2=alpha_2 c3=mu_3 m3=alpha_3 c4=mu_4 m4=alpha_4 k=K";
 
-const ABAQUS_OGDEN: Names = &[
-    ("mu1", Key("mu_1")),
-    ("alpha1", Key("alpha_1")),
-    ("mu2", Key("mu_2")),
-    ("alpha2", Key("alpha_2")),
-    ("mu3", Key("mu_3")),
-    ("alpha3", Key("alpha_3")),
-    ("mu4", Key("mu_4")),
-    ("alpha4", Key("alpha_4")),
-    ("d1", Compliance),
-];
-const ABAQUS_POLYNOMIAL: Names = &[
-    ("c10", Key("c10")),
-    ("c01", Key("c01")),
-    ("c20", Key("c20")),
-    ("c11", Key("c11")),
-    ("c02", Key("c02")),
-    ("c30", Key("c30")),
-    ("d1", Compliance),
-];
-const ABAQUS_ARRUDA_BOYCE: Names = &[
-    ("mu", Key("mu")),
-    ("lambda_m", Key("lambda_m")),
-    ("d", Compliance),
-];
-
-const FEBIO_MOONEY_RIVLIN: Names = &[("c1", Key("c10")), ("c2", Key("c01")), ("k", BulkModulus)];
-const FEBIO_OGDEN: Names = &[
-    ("c1", Key("mu_1")),
-    ("m1", Key("alpha_1")),
-    ("c2", Key("mu_2")),
-    ("m2", Key("alpha_2")),
-    ("c3", Key("mu_3")),
-    ("m3", Key("alpha_3")),
-    ("c4", Key("mu_4")),
-    ("m4", Key("alpha_4")),
-    ("k", BulkModulus),
-];
-const FEBIO_GENT: Names = &[("g", Key("mu")), ("jm", Key("jm")), ("k", BulkModulus)];
-const FEBIO_VERONDA_WESTMANN: Names = &[("c1", Key("c")), ("c2", Key("beta")), ("k", BulkModulus)];
-const FEBIO_NEO_HOOKE: Names = &[("c1", Key("c10")), ("k", BulkModulus)];
-const FEBIO_COUPLED_NEO_HOOKE: Names = &[("e", Young), ("v", PoissonRatio)];
-
-/// The names that a code has for the parameters of a law; empty where it has no such law.
-fn names(code: Code, law: &str) -> Names {
+/// The names that a code has for the parameters of a law, each with its meaning; empty where it has no such law.
+fn names(code: Code, law: &str) -> &'static str {
     match (code, law) {
         (Code::Abaqus | Code::CalculiX, "neo-hooke" | "mooney-rivlin" | "yeoh") => {
             ABAQUS_POLYNOMIAL
@@ -83,13 +30,13 @@ fn names(code: Code, law: &str) -> Names {
         (Code::Abaqus | Code::CalculiX, law) if law.starts_with("ogden-") && law.len() == 7 => {
             ABAQUS_OGDEN
         }
-        (Code::FeBio, "neo-hooke") => FEBIO_NEO_HOOKE,
-        (Code::FeBio, "mooney-rivlin") => FEBIO_MOONEY_RIVLIN,
+        (Code::FeBio, "neo-hooke") => "c1=c10 k=K",
+        (Code::FeBio, "mooney-rivlin") => "c1=c10 c2=c01 k=K",
         (Code::FeBio, law) if law.starts_with("ogden-") && law.len() == 7 => FEBIO_OGDEN,
-        (Code::FeBio, "gent") => FEBIO_GENT,
-        (Code::FeBio, "veronda-westmann") => FEBIO_VERONDA_WESTMANN,
-        (Code::FeBio, "neo-hooke-simo-pister") => FEBIO_COUPLED_NEO_HOOKE,
-        _ => &[],
+        (Code::FeBio, "gent") => "g=mu jm=jm k=K",
+        (Code::FeBio, "veronda-westmann") => "c1=c c2=beta k=K",
+        (Code::FeBio, "neo-hooke-simo-pister") => "e=E v=nu",
+        _ => "",
     }
 }
 
@@ -105,15 +52,12 @@ impl Known {
     ) -> Result<Self, Error> {
         self.choose_forms(code);
         for (name, value) in parameters {
-            let meaning = meaning(code, self.law.name, name)?;
-            match meaning {
-                Key(key) => self.parameters.push((key.to_owned(), value.clone())),
-                BulkModulus => self.moduli.bulk = Some(quantity(name, value, Dimension::Stress)?),
-                Young => self.moduli.young = Some(quantity(name, value, Dimension::Stress)?),
-                Compliance => self.moduli.bulk = bulk_modulus(name, value)?,
-                PoissonRatio => {
-                    self.moduli.poisson_ratio = Some(quantity(name, value, Dimension::Ratio)?);
-                }
+            match meaning(code, self.law.name, name)? {
+                "K" => self.moduli.bulk = Some(quantity(name, value, Dimension::Stress)?),
+                "E" => self.moduli.young = Some(quantity(name, value, Dimension::Stress)?),
+                "2/K" => self.moduli.bulk = bulk_modulus(name, value)?,
+                "nu" => self.moduli.poisson_ratio = Some(quantity(name, value, Dimension::Ratio)?),
+                key => self.parameters.push((key.to_owned(), value.clone())),
             }
         }
         Ok(self)
@@ -146,8 +90,9 @@ fn quantity(name: &str, text: &str, dimension: Dimension) -> Result<f64, Error> 
 }
 
 /// What a name of a code means in a law.
-fn meaning(code: Code, law: &str, name: &str) -> Result<Meaning, Error> {
-    let names = names(code, law);
+fn meaning(code: Code, law: &str, name: &str) -> Result<&'static str, Error> {
+    let names = names(code, law).split(' ');
+    let names: Vec<_> = names.filter_map(|name| name.split_once('=')).collect();
     if names.is_empty() {
         let message = format!("the parameters of {law} in {} are not known", code.name());
         let hint = "state the parameters by the card's keys, without --convention; `gelbench keys card` lists them";
