@@ -86,12 +86,15 @@ impl<'a> Head<'a> {
     /// # Errors
     /// A fault where they contradict each other.
     pub fn setting(&self, key: &str, named: Option<&str>) -> Faulty<Option<String>> {
-        // A remark may follow the word: `nominal (first Piola-Kirchhoff)`.
+        // A remark may follow the word: `nominal (first Piola-Kirchhoff)`; a comma before a digit belongs to a number.
         let word = |value: &str| {
-            value
-                .split(['(', ','])
-                .next()
-                .unwrap_or_default()
+            let ends = |(at, letter): &(usize, char)| match *letter {
+                '(' => true,
+                ',' => !value[*at + 1..].starts_with(|next: char| next.is_ascii_digit()),
+                _ => false,
+            };
+            let end = value.char_indices().find(ends);
+            value[..end.map_or(value.len(), |(at, _)| at)]
                 .trim()
                 .to_owned()
         };

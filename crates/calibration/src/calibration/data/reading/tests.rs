@@ -97,6 +97,10 @@ fn contradictions_and_impossible_values_are_refused_with_their_place() {
             "# test: uniaxial\nstretch [-],strss [MPa]\n1,0",
             "there is no column of stresses",
         ),
+        (
+            "# test: biaxial; strain ratio: 0,5\nstretch [-],nominal_stress [MPa]\n1.1,1",
+            "the strain ratio 0,5 is not a number",
+        ),
     ] {
         let actual = read(text, &[]).unwrap_err();
         assert!(actual.contains(message), "{text}\n{actual}");
