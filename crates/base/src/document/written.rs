@@ -40,18 +40,20 @@ impl Table {
     /// The precision of a column in each row, as written in the file; `None` where a field is not a number.
     pub fn written(&self, column: usize) -> Vec<Option<Written>> {
         let text = &self.source.text;
-        let mut result = Vec::with_capacity(self.rows.len());
+        let start = |row: &usize| self.rows[*row].1.start;
+        // Rows may be in another order than that of the file.
+        let mut order: Vec<usize> = (0..self.rows.len()).collect();
+        order.sort_by_key(start);
+        let mut order = order.iter().peekable();
+        let mut result = vec![None; self.rows.len()];
         for record in self.records(text).records().map_while(Result::ok) {
-            let Some((_, row)) = self.rows.get(result.len()) else {
-                break;
-            };
             let from = record.position().map_or(0, |at| at.byte() as usize);
-            if line_at(text, from).start == row.start {
+            let begins = line_at(text, from).start;
+            if let Some(row) = order.next_if(|row| start(row) == begins) {
                 let field = record.get(column).map(unquoted);
-                result.push(field.and_then(Written::of));
+                result[*row] = field.and_then(Written::of);
             }
         }
-        result.resize(self.rows.len(), None);
         result
     }
 }

@@ -51,6 +51,9 @@ fn rows_whose_times_decrease_are_read_from_the_last_to_the_first() {
     let [forward, backward] = [text.clone(), reversed.join("\n")];
     let [forward, backward] = [forward, backward].map(|text| read(&text, &SPECIMEN).unwrap());
     assert_eq!(stresses(&backward), stresses(&forward));
+    for (one, other) in backward.rounding.iter().zip(forward.rounding) {
+        assert!((one - other).abs() <= 1e-12 * other, "{one} {other}");
+    }
     let is_told = |data: &TestData| {
         data.remarks
             .iter()
