@@ -47,14 +47,19 @@ impl<'a> Elastic<'a> {
         let mut points = Vec::new();
         for (test, data) in tests.iter().enumerate() {
             for axis in [0, 1] {
-                let rows = data.observations.iter().filter(|one| one.axis == axis);
-                let mut along: Vec<Observation> = rows.copied().collect();
-                let each = along.len().div_ceil(BINS).max(1);
-                if each > 1 {
-                    let strain = |one: &Observation| data.drawn_strain(one);
-                    along.sort_by(|a, b| strain(a).total_cmp(&strain(b)));
+                let is_along = |one: &&Observation| one.axis == axis;
+                let count = data.observations.iter().filter(is_along).count();
+                let each = count.div_ceil(BINS).max(1);
+                // States of two protocols may share a stretch and differ in the other one.
+                for protocol in data.protocols() {
+                    let rows = protocol.iter().filter(is_along);
+                    let mut along: Vec<Observation> = rows.copied().collect();
+                    if each > 1 {
+                        let strain = |one: &Observation| data.drawn_strain(one);
+                        along.sort_by(|a, b| strain(a).total_cmp(&strain(b)));
+                    }
+                    points.extend(along.chunks(each).map(|bin| point(test, data, bin)));
                 }
-                points.extend(along.chunks(each).map(|bin| point(test, data, bin)));
             }
         }
         Self::of_points(law, tests, points)

@@ -62,6 +62,29 @@ fn stated(key: &str, value: f64) -> FitSettings {
     bounded(key, [value; 2])
 }
 
+/// More rows than are fitted one by one: means are those of neighbours in one protocol, not of states that share one stretch.
+#[test]
+fn many_rows_are_gathered_within_each_protocol() {
+    let (name, values) = TISSUES[1];
+    let model = law(name, values);
+    let ratios = [[1.0, 1.0], [1.0, 0.5], [0.5, 1.0]];
+    let mut data = record((name, values), (&ratios, 0.3), (0.0, 0));
+    data.observations.clear();
+    for ratio in ratios {
+        for row in 1..=900 {
+            let strains = ratio.map(|one| 0.3 * one * f64::from(row) / 900.0);
+            let stresses = model.biaxial(strains);
+            data.observations.extend([0, 1].map(|axis| Observation {
+                strains,
+                axis,
+                stress: stresses[axis],
+            }));
+        }
+    }
+    let fit = of(name, &data, &starts(8));
+    assert_parameters(&fit, &values[..4], 1e-3);
+}
+
 /// The optima of 400 starts in a real tissue, from those of one usual run.
 #[test]
 fn one_run_ends_at_the_optimum_of_many_starts() {
