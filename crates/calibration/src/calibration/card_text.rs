@@ -86,7 +86,9 @@ fn softened_card(base: &str, fit: &Fit, provenance: &Provenance) -> String {
     let mut kept = true;
     for line in base.lines() {
         if line.trim_start().starts_with('[') {
-            let name = line.trim().trim_matches(['[', ']']);
+            // A remark may follow the heading.
+            let heading = line.trim_start().trim_start_matches('[').split(']').next();
+            let name = heading.unwrap_or_default().trim();
             kept = !["softening", "fit"].contains(&name);
         }
         if kept {
