@@ -13,8 +13,8 @@ pub const STRAIN_RANGE: &str = "strain range";
 
 /// What a row must fulfil.
 enum Condition {
-    /// It stands on one of these lines, counted from 1.
-    Lines([usize; 2]),
+    /// It begins in the part of the text that has these lines.
+    Lines(Range<usize>),
     /// A column has this text.
     Value(usize, String),
 }
@@ -37,20 +37,20 @@ pub fn chosen_rows(head: &Head, rows: &[usize]) -> Faulty<Vec<usize>> {
 
 /// The part of a table's text with the lines that are stated by [`ROWS`]; all of it where none are, or where the statement cannot be read.
 pub fn chosen_text(head: &Head) -> Range<usize> {
-    let text = &head.table.source.text;
-    let start_of = |line: usize| {
-        let mut ends = text.match_indices('\n');
-        let end_before = line.checked_sub(2).map(|before| ends.nth(before));
-        end_before.map_or(0, |end| end.map_or(text.len(), |(at, _)| at + 1))
-    };
-    let mut part = 0..text.len();
+    let mut part = 0..head.table.source.text.len();
     for condition in conditions(head).unwrap_or_default() {
-        if let Condition::Lines([first, last]) = condition {
-            part.start = part.start.max(start_of(first));
-            part.end = part.end.min(start_of(last.saturating_add(1)));
+        if let Condition::Lines(lines) = condition {
+            part = part.start.max(lines.start)..part.end.min(lines.end);
         }
     }
     part
+}
+
+/// Where a line begins, counted from 1; the end of the text where it has fewer.
+fn start_of(text: &str, line: usize) -> usize {
+    let mut ends = text.match_indices('\n');
+    let end_before = line.checked_sub(2).map(|before| ends.nth(before));
+    end_before.map_or(0, |end| end.map_or(text.len(), |(at, _)| at + 1))
 }
 
 /// Those of some rows whose strains, from the zero on, are in the stated [`STRAIN_RANGE`]; all of them where none is.
@@ -81,10 +81,7 @@ pub fn rows_in_range(
 impl Condition {
     fn holds(&self, head: &Head, row: usize) -> bool {
         match self {
-            Self::Lines([first, last]) => {
-                let position = &head.table.rows[row].1;
-                (*first..=*last).contains(&head.table.source.line(position.start))
-            }
+            Self::Lines(lines) => lines.contains(&head.table.rows[row].1.start),
             Self::Value(column, value) => head.table.field(row, *column).as_ref() == Some(value),
         }
     }
@@ -105,9 +102,11 @@ fn conditions(head: &Head) -> Faulty<Vec<Condition>> {
                 "" => Some(open),
                 number => number.parse().ok(),
             };
-            Some([line(first, 1)?, line(last, usize::MAX)?])
+            let start = |line: usize| start_of(&head.table.source.text, line);
+            let after = line(last, usize::MAX)?.saturating_add(1);
+            Some(Condition::Lines(start(line(first, 1)?)..start(after)))
         });
-        lines.map(Condition::Lines).ok_or_else(|| {
+        lines.ok_or_else(|| {
             let message = format!("the rows `{part}` cannot be read");
             let hint =
                 "lines of the file such as 12..340, or a column and its value such as SetName=Test";
