@@ -12,7 +12,6 @@ mod fit;
 mod fitted;
 mod group;
 mod least_squares;
-mod memory;
 mod mounted;
 mod nearest;
 mod protocols;
@@ -32,10 +31,9 @@ pub use data::{
     ColumnReading, Conversion, FoundZero, KEYS, Mounted, Mounting, Observation, PRECONDITIONED,
     RestState, StrainColumn, TableReading, Test, TestData, Times, refuse_repeated,
 };
-pub use fit::fit;
+pub use fit::{Memory, fit};
 pub use fitted::{Fit, FurtherProtocol, MountedFit, Protocols, Relaxed};
 pub use group::{Group, GroupState};
-pub use memory::Memory;
 pub use ranking::{Criterion, best, rank};
 pub use regression::{MovedZero, Zero};
 pub use relaxation::{Terms, fit_relaxation};
