@@ -62,8 +62,9 @@ pub fn fit_relaxation(
     }
     .checked(law, &parameters)?
     .settled();
-    let further = TERM_KEYS[(parameters.len() - of_law) / 2..].as_flattened();
-    let mut fit = solution.fit(law, &parameters, &settings.without(further), None);
+    let terms = (parameters.len() - of_law) / 2;
+    let used = settings.without(TERM_KEYS[terms..].as_flattened());
+    let mut fit = solution.fit(law, &parameters, &used, None);
     let mut material = solution.misfit.response.material(&solution.values);
     material.covered = Covered {
         times: Some(resolved.map(without_rounding)),
