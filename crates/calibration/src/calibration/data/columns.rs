@@ -23,7 +23,7 @@ pub fn strain_factor(
     let named = &head.table.columns[column];
     if role.measure == Some(DISPLACEMENT) {
         let unit = head.factor("strain unit", named, Dimension::Length)?;
-        return Ok(unit / length(head, roles, role.axis())?);
+        return Ok(unit / length_along(head, roles, role)?);
     }
     let values = head.table.rows.iter().map(|(row, _)| row[column].abs());
     let begins_at_rest = || values.fold(f64::INFINITY, f64::min) < AT_REST;
@@ -39,10 +39,8 @@ pub fn strain_factor(
 pub fn stress_factor(head: &Head, roles: &[Role], (column, role): (usize, &Role)) -> Faulty<f64> {
     let named = &head.table.columns[column];
     if role.measure == Some(FORCE) {
-        Ok(
-            head.factor("stress unit", named, Dimension::Force)?
-                / area(head, roles, role.numbered)?,
-        )
+        Ok(head.factor("stress unit", named, Dimension::Force)?
+            / area(head, roles, sized_axis(head, role))?)
     } else {
         head.factor("stress unit", named, Dimension::Stress)
     }
@@ -136,10 +134,30 @@ pub fn stresses(
 /// The length of the specimen at rest along an axis in mm: `length`, or `width` along the second axis, where it is stated; otherwise the size
 /// in the first row that has one less the displacement there.
 pub fn length(head: &Head, roles: &[Role], axis: usize) -> Faulty<f64> {
-    let key = ["length", "width"][axis];
+    size(head, roles, LENGTHS[axis], axis)
+}
+
+/// The keys of the specimen's length along both axes.
+const LENGTHS: [&str; 2] = ["length", "width"];
+
+fn size(head: &Head, roles: &[Role], key: &str, axis: usize) -> Faulty<f64> {
     let stated = head.quantity(key, Dimension::Length)?;
     let size = stated.or_else(|| size_at_rest(head, roles, axis));
     size.ok_or_else(|| head.missing(key, "2 mm"))
+}
+
+/// The length along the axis of a column of displacements.
+fn length_along(head: &Head, roles: &[Role], role: &Role) -> Faulty<f64> {
+    let key = LENGTHS[sized_axis(head, role).unwrap_or(0)];
+    size(head, roles, key, role.axis())
+}
+
+/// The axis by which the sizes of the specimen are named. A strip is as long as it is pulled, whatever the axis is called.
+fn sized_axis(head: &Head, role: &Role) -> Option<usize> {
+    const STRIPS: [&str; 3] = ["uniaxial", "compression", "simple-shear"];
+    let test = head.setting("test", None).ok().flatten();
+    let is_strip = test.is_some_and(|test| STRIPS.contains(&&*test));
+    role.numbered.filter(|axis| *axis == 0 || !is_strip)
 }
 
 /// The size of the specimen along an axis in mm less its displacement, where columns state both: in the first row that has them.
@@ -300,10 +318,10 @@ impl ColumnReading {
         let named = role.measure.map(str::to_owned).or_else(stated);
         let measure = named.unwrap_or_default();
         let divided_by = match &*measure {
-            DISPLACEMENT => length(head, roles, role.axis())
+            DISPLACEMENT => length_along(head, roles, role)
                 .ok()
                 .map(|length| format!("{} mm", rounded(length))),
-            FORCE => area(head, roles, role.numbered)
+            FORCE => area(head, roles, sized_axis(head, role))
                 .ok()
                 .map(|area| format!("{} mm²", rounded(area))),
             _ => None,

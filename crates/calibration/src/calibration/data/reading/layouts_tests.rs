@@ -259,3 +259,21 @@ fn columns_that_are_stated_are_taken_whatever_their_names_are() {
     let head = format!("# columns: strain=channel 1, stress=channel 2 [N]\n{text}");
     assert_eq!(read(&head, &SPECIMEN).unwrap().observations.len(), 3);
 }
+
+#[test]
+fn a_strip_is_as_long_as_it_is_pulled_whatever_its_axis_is_called() {
+    let stated = [
+        ("test", "uniaxial"),
+        ("zero", "none"),
+        ("length", "50 mm"),
+        ("width", "10 mm"),
+        ("thickness", "2 mm"),
+    ];
+    for axis in ["", "_x", "_y"] {
+        let text = format!("Displacement{axis} [mm],Force{axis} [N]\n0,0\n1,2\n2,4\n");
+        let data = read(&text, &stated).unwrap();
+        let last = data.observations[2];
+        assert!((last.strain() - 0.04).abs() < 1e-15, "{text}: {last:?}");
+        assert!((last.stress - 0.2).abs() < 1e-15, "{text}: {last:?}");
+    }
+}
