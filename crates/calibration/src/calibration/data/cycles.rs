@@ -143,6 +143,7 @@ impl Branches {
     pub fn rows(&self, cycle: Cycle) -> Option<Range<usize>> {
         match cycle {
             Cycle::All => Some(0..self.rows),
+            Cycle::Number(2..) if self.is_one_pull => None,
             _ if self.is_one_pull => Some(0..self.rows),
             Cycle::First => self.loading.first().cloned(),
             Cycle::Last => self.loading.last().cloned(),
@@ -302,8 +303,10 @@ mod tests {
         let result = Branches::of(&hold);
         assert!(!result.is_one_pull);
         assert_eq!(result.rows(Cycle::Last), Some(0..31));
-        let pull = path(&[0.0, 1.0], 50);
-        assert_eq!(Branches::of(&pull).rows(Cycle::Last), Some(0..51));
+        let pull = Branches::of(&path(&[0.0, 1.0], 50));
+        assert_eq!(pull.rows(Cycle::Last), Some(0..51));
+        assert_eq!(pull.rows(Cycle::Number(1)), Some(0..51));
+        assert_eq!(pull.rows(Cycle::Number(2)), None);
     }
 
     /// Rows that are cut from a record begin anywhere; stresses have the sign of the pull, or that of pressing.
