@@ -38,7 +38,7 @@ pub struct EnergyOfInvariants(Expression);
 pub struct EnergyOfStrains(Expression);
 
 /// The most operators and brackets of a formula, and the most brackets within one another: each is a call within the one before.
-const MOST: [usize; 2] = [300, 40];
+const MOST: [usize; 2] = [500, 40];
 
 /// Why a formula is too long to be read, if it is.
 fn too_long(text: &str) -> Option<String> {
