@@ -5,9 +5,8 @@ use rayon::prelude::*;
 use super::data::TestData;
 use super::fit::fit;
 use super::fitted::{Fit, Protocols};
-use super::settings::{FitSettings, MEASURE};
+use super::settings::FitSettings;
 use crate::error::Error;
-use crate::material::parameters::StressMeasure;
 use crate::material::registry::{Law, MARLOW_TABLE, SWELLING};
 
 /// By what laws are ranked.
@@ -46,11 +45,11 @@ pub fn rank(tests: &[TestData], settings: &FitSettings) -> (Vec<Fit>, Vec<String
             .flat_map(|test| &test.observations)
             .any(|one| one.axis == axis)
     };
-    let (both_axes, measure) = (axis(0) && axis(1), StressMeasure::Nominal);
+    let both_axes = axis(0) && axis(1);
     let eligible: Vec<&'static Law> = Law::fitted()
         .filter(|law| ![MARLOW_TABLE, SWELLING].contains(&law.name))
         .filter(|law| {
-            let model = law.with_values(&[], measure, MEASURE).0;
+            let (model, _) = law.unknown();
             // Stresses of the usual tests alone do not determine how a body changes its volume.
             model.bulk_modulus().is_none() && (both_axes || model.is_isotropic())
         })

@@ -10,11 +10,11 @@ use super::fitted::{Fit, Relaxed};
 use super::least_squares::Residuals;
 use super::nearest::{check_measures, nearest};
 use super::regression::Misfit;
-use super::settings::{FitSettings, MEASURE, limits};
+use super::settings::{FitSettings, limits};
 use super::solution::Solution;
 use super::trust::taken_zeros;
 use crate::error::Error;
-use crate::material::parameters::{Parameter, StressMeasure};
+use crate::material::parameters::Parameter;
 use crate::material::registry::{Law, MARLOW_TABLE};
 use crate::material::viscosity::Covered;
 use crate::statistics::extremes;
@@ -159,7 +159,7 @@ fn elastic(law: &'static Law, tests: &[TestData], settings: &FitSettings) -> Res
         let hint = "fit the relaxation with a law that has parameters";
         return Err(Error::input(message, hint));
     }
-    let (unknown, _) = law.with_values(&[], StressMeasure::Nominal, MEASURE);
+    let (unknown, _) = law.unknown();
     if unknown.bulk_modulus().is_some() {
         let message = format!("{} is compressible", law.name);
         let hint = "relaxation is fitted to incompressible laws only: choose another law";

@@ -3,7 +3,7 @@
 use super::data::{Test, TestData};
 use crate::document::{Bound, name_of};
 use crate::error::{Error, suggestion};
-use crate::material::parameters::{Parameter, StrainMeasure, StressMeasure};
+use crate::material::parameters::{Parameter, StrainMeasure};
 use crate::material::registry::Law;
 use crate::units::Dimension;
 
@@ -96,7 +96,7 @@ pub const MEASURE: StrainMeasure = StrainMeasure::Nominal;
 
 /// Parameters that the tests do not determine because none of them shears the sheet, with the values that they are held at.
 pub fn held(law: &Law, tests: &[TestData], bounds: &Bounds) -> Vec<(&'static str, f64)> {
-    let (_, entries) = law.with_values(&[], StressMeasure::Nominal, MEASURE);
+    let (_, entries) = law.unknown();
     let is_held = |(key, _): &&(&str, f64)| {
         !has_shear(tests) && bounds.iter().all(|(stated, _)| stated != key)
     };

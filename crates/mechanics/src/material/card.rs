@@ -325,7 +325,7 @@ fn of_other_laws(key: &str, law_name: &str) -> Option<String> {
         ));
     }
     let has = |law: &&Law| {
-        let (_, entries) = law.with_values(&[], StressMeasure::Nominal, StrainMeasure::Nominal);
+        let (_, entries) = law.unknown();
         entries
             .parameters
             .iter()

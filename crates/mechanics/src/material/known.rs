@@ -4,7 +4,7 @@
 //! modulus at rest; Poisson's ratio or the bulk modulus follow in closed form ([`Moduli`]).
 
 use super::Card;
-use super::parameters::{Parameter, StrainMeasure, StressMeasure};
+use super::parameters::Parameter;
 use super::registry::{Law, MARLOW_TABLE, SWELLING};
 use super::volume::{LARGEST_POISSON_RATIO, VolumeEnergy};
 use crate::error::{Diagnostic, Error, nearest};
@@ -66,9 +66,7 @@ impl Known {
 
     /// The card, with the parameter that follows from the moduli.
     fn draft(&self, title: &str) -> Result<Draft, Error> {
-        let (_, entries) =
-            self.law
-                .with_values(&[], StressMeasure::Nominal, StrainMeasure::Nominal);
+        let (_, entries) = self.law.unknown();
         let choices = entries.choices.iter().map(|(key, _)| *key);
         self.check_keys(entries.parameters.iter().map(|one| one.key).chain(choices))?;
         if self.law.name == MARLOW_TABLE {
@@ -265,9 +263,7 @@ impl Known {
         draft: &Draft,
     ) -> Result<&'static str, Error> {
         let name = self.law.name;
-        let (law, _) = self
-            .law
-            .with_values(&[], StressMeasure::Nominal, StrainMeasure::Nominal);
+        let (law, _) = self.law.unknown();
         let fault = |message: String, hint: String| Err(Error::input(message, hint));
         if !law.is_isotropic() || name == SWELLING {
             return fault(

@@ -79,6 +79,11 @@ impl Law {
         let law = (self.read)(&parameters);
         (law, parameters.finish())
     }
+
+    /// The law with unknown parameters, and the entries that a card of it has.
+    pub fn unknown(&self) -> (Box<dyn HyperelasticLaw>, CardEntries) {
+        self.with_values(&[], StressMeasure::Nominal, StrainMeasure::Nominal)
+    }
 }
 
 /// The law that is a formula.
