@@ -3,8 +3,6 @@
 //! Inside the program every length is in mm, force in N, stress in MPa, energy in mJ, time in s and
 //! mass in tonne. These units are consistent: 1 N = 1 tonne·mm/s², 1 MPa = 1 N/mm², 1 mJ = 1 N·mm.
 
-use std::fmt;
-
 mod dimension;
 mod figures;
 mod linear;
@@ -19,19 +17,25 @@ pub use remedy::{RareUnit, bare_ratio, could_be_stretch_ratios, rare, symbol};
 pub use sheet_size::implausible_sheet;
 
 /// Why a text is not a quantity of the wanted dimension.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum QuantityFault {
     /// The text does not begin with a finite decimal number.
+    #[error("does not begin with a finite number")]
     NotANumber,
     /// The number has a comma.
+    #[error("has a number with a comma")]
     DecimalComma,
     /// A number without a unit.
+    #[error("has no unit")]
     MissingUnit,
     /// A unit that is not in the table.
+    #[error("has the unknown unit `{0}`")]
     UnknownUnit(String),
     /// A magnitude outside the possible range of this dimension.
+    #[error("{}", out_of_range(*.0))]
     OutOfRange(Dimension),
     /// A unit of another dimension.
+    #[error("has the unit `{unit}`, which measures {}", .actual.name())]
     WrongDimension {
         /// The unit as written.
         unit: String,
@@ -40,28 +44,12 @@ pub enum QuantityFault {
     },
 }
 
-impl std::error::Error for QuantityFault {}
-
-impl fmt::Display for QuantityFault {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NotANumber => write!(f, "does not begin with a finite number"),
-            Self::DecimalComma => write!(f, "has a number with a comma"),
-            Self::MissingUnit => write!(f, "has no unit"),
-            Self::UnknownUnit(unit) => write!(f, "has the unknown unit `{unit}`"),
-            Self::OutOfRange(dimension) => {
-                let ([least, most], unit) = (dimension.range(), dimension.internal_unit());
-                let (name, space) = (dimension.name(), if unit.is_empty() { "" } else { " " });
-                write!(
-                    f,
-                    "is not a possible {name}: its absolute value must be zero or lie between {least:e} and {most:e}{space}{unit}"
-                )
-            }
-            Self::WrongDimension { unit, actual } => {
-                write!(f, "has the unit `{unit}`, which measures {}", actual.name())
-            }
-        }
-    }
+fn out_of_range(dimension: Dimension) -> String {
+    let ([least, most], unit) = (dimension.range(), dimension.internal_unit());
+    let (name, space) = (dimension.name(), if unit.is_empty() { "" } else { " " });
+    format!(
+        "is not a possible {name}: its absolute value must be zero or lie between {least:e} and {most:e}{space}{unit}"
+    )
 }
 
 /// 0 °C in K.

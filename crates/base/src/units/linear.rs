@@ -1,7 +1,5 @@
 //! Quantities that are linear in the reference coordinates, as text: `"2 mm + 0.1 * X - 5 % * Y"`.
 
-use std::fmt;
-
 use super::{Dimension, QuantityFault, parse};
 
 /// f(X, Y) = f₀ + g₁ X + g₂ Y with the place at rest X, Y in mm.
@@ -29,31 +27,17 @@ impl Linear {
 }
 
 /// Why a text is not a linear function of the place.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum LinearFault {
     /// A sign without a term after it, or no text at all.
+    #[error("lacks a term")]
     MissingTerm,
     /// A factor that is neither X nor Y.
+    #[error("has the factor `{0}`, which is neither X nor Y (the position at rest)")]
     NotAPlace(String),
     /// A number that cannot be read, with its text and the dimension that it should have.
+    #[error("has the term `{0}`, which {2}")]
     Quantity(String, Dimension, QuantityFault),
-}
-
-impl std::error::Error for LinearFault {}
-
-impl fmt::Display for LinearFault {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::MissingTerm => write!(f, "lacks a term"),
-            Self::NotAPlace(text) => {
-                write!(
-                    f,
-                    "has the factor `{text}`, which is neither X nor Y (the position at rest)"
-                )
-            }
-            Self::Quantity(text, _, fault) => write!(f, "has the term `{text}`, which {fault}"),
-        }
-    }
 }
 
 impl LinearFault {
