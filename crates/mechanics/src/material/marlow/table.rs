@@ -82,8 +82,7 @@ impl TableCurve {
             Err(fault) => {
                 let hint = "give increasing strains from rest on, and a stress that begins to rise";
                 parameters.fault("stress", &fault.to_string(), hint);
-                let rest = [Knot::default(), Knot::default()];
-                let knots = rest.to_vec();
+                let knots = vec![Knot::UNREAD; 2];
                 Box::new(Marlow {
                     curve: Self { knots, extrapolate },
                 })
@@ -173,15 +172,14 @@ impl TableCurve {
     }
 }
 
-impl Default for Knot {
-    fn default() -> Self {
-        Self {
-            x: f64::NAN,
-            stress: f64::NAN,
-            slope: f64::NAN,
-            energy: f64::NAN,
-        }
-    }
+impl Knot {
+    /// Of a curve that could not be read.
+    const UNREAD: Self = Self {
+        x: f64::NAN,
+        stress: f64::NAN,
+        slope: f64::NAN,
+        energy: f64::NAN,
+    };
 }
 
 impl TensionCurve for TableCurve {
