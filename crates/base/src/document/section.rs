@@ -14,7 +14,6 @@ use crate::error::{Diagnostic, Source, suggestion};
 
 mod choices;
 mod plain;
-mod stated;
 mod values;
 
 /// One table of a document.

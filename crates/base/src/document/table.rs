@@ -356,7 +356,6 @@ impl Table {
 }
 
 mod parts;
-mod settled;
 
 #[cfg(test)]
 mod dialects;

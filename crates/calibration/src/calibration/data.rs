@@ -4,7 +4,6 @@ mod choice;
 mod columns;
 mod conversion;
 mod cycles;
-mod flip;
 mod gross_rows;
 mod layout;
 mod mounting;

@@ -3,7 +3,6 @@
 use super::choice::Choice;
 use super::columns::{Scaled, StressColumn, machine, strain_ratio, strains, stresses, time};
 use super::cycles::{SPECIMEN_NAME, preconditioned, reversals};
-use super::flip::flip;
 use super::mounting::Mounted;
 use super::mounting_statements::refuse_cauchy;
 use super::plausible::{check_signs, implausible, stress_at_rest};
@@ -11,7 +10,7 @@ use super::record::{Machine, Part};
 use super::roles::{Kind, Role, check_columns, of_kind};
 use super::rounding::WrittenColumn;
 use super::row_choice::rows_in_range;
-use super::strain_column::StrainColumn;
+use super::strain_column::{StrainColumn, flip};
 use super::table_reading::TableReading;
 use super::test_data::{Loaded, Observation, Test, TestData, Times};
 use crate::document::{Faulty, Head, Table};

@@ -1,7 +1,6 @@
 //! Test data that are impossible or implausible.
 
-use super::flip::FLIP;
-use super::strain_column::StrainColumn;
+use super::strain_column::{FLIP, StrainColumn};
 use super::test_data::{Observation, Test};
 use crate::document::{Faulty, Head};
 use crate::error::Diagnostic;

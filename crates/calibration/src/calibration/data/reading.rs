@@ -5,10 +5,10 @@ use std::path::Path;
 
 use super::choice::COLUMNS;
 use super::cycles::{PRECONDITIONED, SPECIMEN_NAME};
-use super::flip::FLIP;
 use super::gross_rows::{gross_rows, torn_rows};
 use super::layout::Layout;
 use super::row_choice::{ROWS, STRAIN_RANGE, chosen_rows, chosen_text};
+use super::strain_column::FLIP;
 use super::test_data::TestData;
 use crate::document::{Head, Statements, Table};
 use crate::error::{Diagnostic, Error};
