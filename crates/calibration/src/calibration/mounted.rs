@@ -59,6 +59,29 @@ pub fn mounting(tests: &[TestData]) -> Result<Option<Mounting>, Error> {
     Ok(first.and_then(|mounted| mounted.mounting))
 }
 
+/// Refuses tests of a sheet on its mounting, or whose state at rest or zeros of force are found with the law, for fits that take neither into
+/// account.
+///
+/// # Errors
+/// [`Error::Input`] with the first of them.
+pub fn refuse_mounted(tests: &[TestData]) -> Result<(), Error> {
+    let is_solved = |test: &&TestData| {
+        let mounted = &test.mounted;
+        mounted.mounting.is_some() || mounted.estimates_stretches() || mounted.estimates_force_zero
+    };
+    let Some(test) = tests.iter().find(is_solved) else {
+        return Ok(());
+    };
+    let message = format!(
+        "{}: relaxation and softening are not fitted with the mounting, the state at rest or the zero of force of a sheet",
+        test.name
+    );
+    Err(Error::input(
+        message,
+        "fit the law alone, or leave these statements out",
+    ))
+}
+
 /// Values of a law, and of the state at rest, from which the iteration converges. At first the sheet is taken as free of stress as mounted:
 /// with an isotropic law, a stretch as mounted would compensate for the missing anisotropy and lead far away.
 fn begin(

@@ -8,6 +8,7 @@
 use super::data::{Branches, TestData, Times};
 use super::fitted::{Fit, Relaxed};
 use super::least_squares::Residuals;
+use super::mounted::refuse_mounted;
 use super::nearest::{check_measures, nearest};
 use super::regression::Misfit;
 use super::settings::{FitSettings, limits};
@@ -43,6 +44,7 @@ pub fn fit_relaxation(
     terms: Terms,
 ) -> Result<Fit, Error> {
     check_measures(tests)?;
+    refuse_mounted(tests)?;
     let histories = History::all(tests, true)?;
     let elastic = elastic(law, tests, settings)?;
     let of_law = elastic.of_law;

@@ -8,6 +8,7 @@ use std::sync::Arc;
 use super::data::{Observation, TestData};
 use super::fitted::Fit;
 use super::least_squares::{Residuals, descend};
+use super::mounted::refuse_mounted;
 use super::nearest::{check_measures, nearest};
 use super::regression::{Misfit, improved};
 use super::settings::{FitSettings, limits};
@@ -34,6 +35,7 @@ use misfit::{SOFTENING, Softens, softening_parameters};
 /// [`Error::Input`] where the tests never unload, where there are too few points, and as [`fit`](super::fit()).
 pub fn fit_softening(base: Base, tests: &[TestData], settings: &FitSettings) -> Result<Fit, Error> {
     check_measures(tests)?;
+    refuse_mounted(tests)?;
     check_cycles(tests)?;
     let first = first_loading(base, tests, settings)?;
     let of_law = first.parameters.len();

@@ -282,9 +282,14 @@ fn what_cannot_be_fitted_is_told_with_a_remedy() {
         "",
     )];
     let good = [ramp_and_hold(1e-4, 0.0, 0)];
+    let names = "time [s],stretch_1,stretch_2,nominal_stress_1 [MPa],nominal_stress_2 [MPa]";
+    let rows = "0,1,1,0,0\n1,1.1,1.1,0.1,0.1\n2,1.2,1.2,0.2,0.2\n";
+    let head = "# test: biaxial; rest state: estimated";
+    let mounted = [parsed(&format!("{head}\n{names}\n{rows}"))];
     for (law, tests, message) in [
         ("neo-hooke", &without[..], "no column of times"),
         ("neo-hooke", &backwards, "the times decrease"),
+        ("neo-hooke", &mounted, "are not fitted with the mounting"),
         ("marlow-table", &good, "takes a curve as it is"),
         ("ogden-hill-1", &good, "is compressible"),
     ] {
