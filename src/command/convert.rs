@@ -7,6 +7,7 @@ use clap::Args;
 use super::arguments::one_of;
 use super::terminal::{Outcome, print, print_data, save, warn};
 use super::test_reading::ReadingArguments;
+use gelbench_base::error::Diagnostic;
 use gelbench_calibration::calibration::{Conversion, StrainColumn, TestData};
 use gelbench_mechanics::material::parameters::StressMeasure;
 use gelbench_report::output;
@@ -34,7 +35,13 @@ pub struct ConvertArguments {
 /// Writes test data in other measures and units.
 pub fn convert(arguments: ConvertArguments) -> Outcome {
     let data = TestData::read(&arguments.data, &arguments.reading.reading()?)?;
-    warn(&data.all_warnings());
+    let mut warnings = data.all_warnings();
+    warnings.extend(data.mounted.mounting.map(|_| {
+        let message = "the mounting of the sheet is not written with the converted data";
+        let hint = "state it again where they are fitted, with the sizes of the sheet";
+        Diagnostic::warning("", message).hint(hint)
+    }));
+    warn(&warnings);
     let text = Conversion {
         stress: arguments.to_stress.unwrap_or(data.stress_measure),
         strain: arguments.to_strain,

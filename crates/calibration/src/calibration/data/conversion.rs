@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use super::cycles::{PRECONDITIONED, SPECIMEN_NAME};
+use super::mounting_statements::{FORCE_ZERO, REST_STATE};
 use super::strain_column::StrainColumn;
 use super::test_data::{Test, TestData};
 use crate::error::Error;
@@ -44,25 +45,8 @@ impl Conversion {
             Error::input(format!("the unit to write {fault}"), hint)
         })?;
         let times = data.known_times()?;
-        let mut text = String::new();
-        for (key, value) in &data.head {
-            if KEPT.contains(&&**key) {
-                let _ = writeln!(text, "# {key}: {value}");
-            }
-        }
-        if data.rise > 0.0 {
-            let _ = writeln!(text, "# ramp: {} s", data.rise);
-        }
-        if let Some(strain) = data.preconditioned {
-            let _ = writeln!(text, "# {PRECONDITIONED}: {}", 1.0 + strain);
-        }
         let axes = &data.axes;
-        let direction = if axes[..] == [1] {
-            "; direction: 2"
-        } else {
-            ""
-        };
-        let _ = writeln!(text, "# test: {}{direction}", data.test.name());
+        let mut text = head(data);
         let _ = writeln!(text, "{}", self.names(data, times.is_some()).join(","));
         let (strain, stress) = match data.test {
             Test::SimpleShear => (
@@ -127,6 +111,38 @@ impl Conversion {
     }
 }
 
+/// What is stated of a test, whatever its measures and units are.
+fn head(data: &TestData) -> String {
+    let mut text = String::new();
+    for (key, value) in &data.head {
+        if KEPT.contains(&&**key) {
+            let _ = writeln!(text, "# {key}: {value}");
+        }
+    }
+    if data.rise > 0.0 {
+        let _ = writeln!(text, "# ramp: {} s", data.rise);
+    }
+    if let Some(strain) = data.preconditioned {
+        let _ = writeln!(text, "# {PRECONDITIONED}: {}", 1.0 + strain);
+    }
+    let mounted = &data.mounted;
+    for (key, is_estimated) in [
+        (REST_STATE, mounted.estimates_stretches()),
+        (FORCE_ZERO, mounted.estimates_force_zero),
+    ] {
+        if is_estimated {
+            let _ = writeln!(text, "# {key}: estimated");
+        }
+    }
+    let direction = if data.axes[..] == [1] {
+        "; direction: 2"
+    } else {
+        ""
+    };
+    let _ = writeln!(text, "# test: {}{direction}", data.test.name());
+    text
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -141,6 +157,7 @@ mod tests {
             "# ramp: 2 s\n# test: uniaxial\ntime [s],stretch [-],nominal_stress [MPa]\n0,1.5,0.25\n10,1.5,0.2\n30,1.5,0.18\n",
             "# test: planar; direction: 2\nstretch [-],nominal_stress [MPa]\n1.5,0.25\n2,0.5\n",
             "# test: biaxial\nstretch_1 [-],stretch_2 [-],nominal_stress_1 [MPa],nominal_stress_2 [MPa]\n1.5,1.25,0.5,0.25\n",
+            "# rest state: estimated\n# force zero: estimated\n# test: biaxial\nstretch_1 [-],stretch_2 [-],nominal_stress_1 [MPa],nominal_stress_2 [MPa]\n1.5,1.25,0.5,0.25\n",
         ] {
             let data = parsed(text);
             let away = Conversion {
@@ -168,6 +185,7 @@ mod tests {
             let times = |data: &TestData| data.known_times().unwrap().map(<[f64]>::to_vec);
             assert_eq!(times(&again), times(&data), "{text}");
             assert_eq!(again.rise, data.rise, "{text}");
+            assert_eq!(again.mounted, data.mounted, "{text}");
             for (one, other) in data.observations.iter().zip(&again.observations) {
                 assert!((one.stress - other.stress).abs() < 1e-15);
             }

@@ -21,6 +21,12 @@ const OF_MOUNTING: [&str; 8] = [
     "markers",
 ];
 
+/// The key of the state without stress.
+pub(super) const REST_STATE: &str = "rest state";
+
+/// The key of the zeros of both forces.
+pub(super) const FORCE_ZERO: &str = "force zero";
+
 /// Tines of one side at most.
 const MOST_TINES: usize = 20;
 
@@ -145,7 +151,7 @@ fn tines(head: &Head) -> Faulty<usize> {
 }
 
 fn rest_state(head: &Head) -> Faulty<RestState> {
-    let Some(text) = head.text("rest state")? else {
+    let Some(text) = head.text(REST_STATE)? else {
         return Ok(RestState::AsMounted);
     };
     let numbers: Option<Vec<f64>> = text.split(',').map(|one| one.trim().parse().ok()).collect();
@@ -160,16 +166,16 @@ fn rest_state(head: &Head) -> Faulty<RestState> {
         _ => {
             let message = format!("the rest state `{text}` is not known");
             let hint = "as-mounted, estimated, or the stretches along both axes as mounted, such as 1.05,1.03 (from 0.7 to 2)";
-            Err(head.fault_of("rest state", message, hint))
+            Err(head.fault_of(REST_STATE, message, hint))
         }
     }
 }
 
 fn is_estimated(head: &Head) -> Faulty<bool> {
     const NAMES: [(&str, bool); 2] = [("as-measured", false), ("estimated", true)];
-    match head.setting("force zero", None)? {
+    match head.setting(FORCE_ZERO, None)? {
         None => Ok(false),
-        Some(_) => head.choice("force zero", None, &NAMES),
+        Some(_) => head.choice(FORCE_ZERO, None, &NAMES),
     }
 }
 
