@@ -27,11 +27,13 @@ impl RandomEffects {
     /// Of values with their standard errors; `None` of fewer than two.
     pub fn new(values: &[[f64; 2]]) -> Option<Self> {
         const HALVINGS: usize = 100;
+        /// The least variance: sums of its inverse are finite.
+        const LEAST: f64 = 1e-200;
         let freedom = values.len().checked_sub(1).filter(|freedom| *freedom > 0)? as f64;
         let plain = values.iter().map(|[y, _]| y).sum::<f64>() / values.len() as f64;
         let scatter: f64 = values.iter().map(|[y, _]| (y - plain).powi(2)).sum();
         let at = |variance: f64| {
-            let weight = |error: f64| 1.0 / (error * error + variance).max(f64::MIN_POSITIVE);
+            let weight = |error: f64| 1.0 / (error * error + variance).max(LEAST);
             let sum: f64 = values.iter().map(|[_, error]| weight(*error)).sum();
             let mean = values.iter().map(|[y, s]| weight(*s) * y).sum::<f64>() / sum;
             let square = values.iter().map(|[y, s]| weight(*s) * (y - mean).powi(2));
@@ -83,6 +85,10 @@ mod tests {
         assert!((effects.mean - 3.0).abs() < 1e-12 && (effects.between - deviation).abs() < 1e-9);
         assert!((effects.standard_error - deviation / 3.0_f64.sqrt()).abs() < 1e-9);
         assert_eq!(RandomEffects::new(&[[1.0, 0.1]]), None);
+        for number in 2..9 {
+            let equal = RandomEffects::new(&vec![[0.5, 0.0]; number]).unwrap();
+            assert!((equal.mean - 0.5).abs() < 1e-12 && equal.between == 0.0);
+        }
     }
 
     /// Specimens that do not differ have the weighted mean of their errors.
