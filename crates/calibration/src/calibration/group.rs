@@ -255,7 +255,8 @@ mod tests {
     /// Specimens with C₁₀ of 0.05 and 0.07 MPa that are pressed, pulled along the second axis, or stressed along both.
     #[test]
     fn means_are_those_at_the_strains_and_along_the_axes_of_the_tests() {
-        let cases: [(&str, fn(f64, f64) -> f64, f64, usize); 3] = [
+        type Stress = fn(f64, f64) -> f64;
+        let cases: [(&str, Stress, f64, usize); 3] = [
             (
                 "compression\nstretch [-],nominal_stress [MPa]",
                 uniaxial,

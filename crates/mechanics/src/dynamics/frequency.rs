@@ -25,7 +25,7 @@ const PRINCIPAL: f64 = 0.25;
 
 /// The mode with the largest part in a motion of the whole body along an axis: (Σ mᵢ φᵢ)² over its unknowns is its effective
 /// mass. `None` where that is less than a quarter of the whole: bending has no part in a motion along a strip.
-fn strongest(modes: Vec<Mode>, mass: &[f64], axis: usize) -> Option<Mode> {
+pub fn strongest(modes: Vec<Mode>, mass: &[f64], axis: usize) -> Option<Mode> {
     let along = || (axis..mass.len()).step_by(2);
     let effective = |mode: &Mode| {
         along()

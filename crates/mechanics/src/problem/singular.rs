@@ -57,7 +57,6 @@ pub fn singular_points(mesh: &Mesh, fixed: &BTreeSet<usize>) -> Vec<[f64; 2]> {
 #[cfg(test)]
 mod tests {
     use super::super::tests::samples::{moved, problem, strip};
-    use super::*;
     use crate::mesh::{CellShape, Shape};
     use crate::problem::{Drive, Support};
 

@@ -179,21 +179,18 @@ fn sets(model: &Model, columns: &Columns, file: &mut Xml) {
         file.text("NodeSet", &[("name", &name)], &list(columns.all(&[*node])));
     }
     for (number, (node, share, _)) in node_forces(model, columns).into_iter().enumerate() {
-        let name = force_set(number);
-        file.text(
-            "NodeSet",
-            &[("name", &name)],
-            &columns.0[&node][share].to_string(),
-        );
+        let column = columns.0[&node][share].to_string();
+        file.text("NodeSet", &[("name", &force_set(number))], &column);
     }
     for (name, sides) in &model.surfaces {
         file.within("Surface", &[("name", name)], |file| {
             for (number, (cell, side)) in sides.iter().enumerate() {
                 let (shape, nodes) = model.cells[*cell];
-                let edge = shape.edges()[*side].iter();
-                let edge: Vec<_> = edge.map(|position| nodes[*position]).collect();
+                let edges = shape.edges();
+                let edge: Vec<_> = edges[*side].iter().map(|at| nodes[*at]).collect();
                 let (kind, face) = columns.face(shape, &edge);
-                file.text(kind, &[("id", &(number + 1).to_string())], &list(face));
+                let id = (number + 1).to_string();
+                file.text(kind, &[("id", &id)], &list(face));
             }
         });
     }
