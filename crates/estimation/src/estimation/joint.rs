@@ -137,9 +137,7 @@ fn outcome(
         frames: frame_outcomes(descent, &course, &parts, &inverse, settings.groups, watch)?,
         common,
         force_scatter,
-        deviance: sum(|part| part.deviance),
         effective_parameters: effective,
-        independent: sum(|part| part.independent) + measured,
         steps: course.steps,
         ended: course.ended,
         directions,
@@ -225,8 +223,14 @@ fn frame_outcomes(
         let outcome = |index: usize| {
             let frame = descent.frames[index];
             let prediction = frame.cross_predict(&law, Some(&course.states[index]))?;
-            let share = parts[index].information.dot(inverse) / course.values.len() as f64;
-            Ok(frame_outcome(frame, prediction, share, others.is_some()))
+            let part = &parts[index];
+            let share = part.information.dot(inverse) / course.values.len() as f64;
+            Ok(frame_outcome(
+                frame,
+                part,
+                prediction,
+                (share, others.is_some()),
+            ))
         };
         let prediction = members.into_par_iter().map(outcome);
         outcomes.extend(prediction.collect::<Result<Vec<FrameOutcome>, Error>>()?);
@@ -236,9 +240,9 @@ fn frame_outcomes(
 
 fn frame_outcome(
     frame: &Frame,
+    part: &FrameInformation,
     prediction: CrossPrediction,
-    share: f64,
-    is_predicted: bool,
+    (share, is_predicted): (f64, bool),
 ) -> FrameOutcome {
     let forces = frame.measured().iter().zip(prediction.forces);
     let force = |(measured, predicted): (&MeasuredForce, f64)| ForcePrediction {
@@ -249,5 +253,7 @@ fn frame_outcome(
         share,
         forces: forces.map(force).collect(),
         residual_rms: prediction.residual_rms,
+        deviance: part.deviance,
+        independent: part.independent,
     }
 }

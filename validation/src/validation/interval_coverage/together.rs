@@ -182,13 +182,13 @@ fn judged(frames: &[JointFrame], settings: &Settings) -> Result<Trial, Error> {
     let other = find(wrong, false)?;
     let error = |actual: &JointEstimate| 100.0 * actual.prediction_error().unwrap_or(f64::INFINITY);
     let parameters = actual.parameters.iter().zip(&truth);
+    let criteria = JointEstimate::information_criteria(&[&actual, &other]);
     Ok(Trial {
         held: parameters
             .map(|(actual, truth)| actual.holds(*truth))
             .collect(),
         predicted: [error(&actual), error(&other)],
-        is_right_first: error(&actual) < error(&other)
-            && actual.information_criterion() < other.information_criterion(),
+        is_right_first: error(&actual) < error(&other) && criteria[0] < criteria[1],
         common: actual.common,
     })
 }

@@ -57,12 +57,8 @@ pub struct JointEstimate {
     pub common: f64,
     /// The scatter of the measured forces about those of the fields.
     pub force_scatter: ForceScatter,
-    /// −2 ln L of markers and forces with the number of independent values, up to a constant of the data.
-    pub deviance: f64,
     /// Number of parameters of edges and law that the data determined.
     pub effective_parameters: f64,
-    /// Number of independent values of markers and forces.
-    pub independent: f64,
     /// Steps of the search.
     pub steps: usize,
     /// Why the search ended before the least misfit, if it did: frames have no equilibrium at the next values.
@@ -107,6 +103,10 @@ pub struct FrameOutcome {
     pub forces: Vec<ForcePrediction>,
     /// Root mean square of each component of the sound markers' residuals in mm, with the law of the other frames.
     pub residual_rms: f64,
+    /// −2 ln L of one of its markers' independent values, up to a constant of the data.
+    pub deviance: f64,
+    /// Number of independent values of its markers.
+    pub independent: f64,
 }
 
 /// A measured force, and that of the field with the law of the other groups of frames.
@@ -119,9 +119,26 @@ pub struct ForcePrediction {
 }
 
 impl JointEstimate {
-    /// The corrected Akaike information criterion with the number of independent values; infinite where there are too few.
-    pub fn information_criterion(&self) -> f64 {
-        corrected_akaike_criterion(self.deviance, self.effective_parameters, self.independent)
+    /// The corrected Akaike information criterion of laws with the same frames; infinite where there are too few independent values.
+    ///
+    /// Each law's residuals may show another number of independent values. A likelihood of another number of values cannot be compared, so
+    /// that all laws have the least number of each frame.
+    pub fn information_criteria(estimates: &[&Self]) -> Vec<f64> {
+        let criterion = |estimate: &&Self| {
+            let measured = estimate.frames.iter().map(|frame| frame.forces.len());
+            let mut independent = measured.sum::<usize>() as f64;
+            let mut deviance = estimate.force_scatter.misfit;
+            for (k, frame) in estimate.frames.iter().enumerate() {
+                let counts = estimates.iter().filter_map(|one| one.frames.get(k));
+                let least = counts
+                    .map(|one| one.independent)
+                    .fold(f64::INFINITY, f64::min);
+                independent += least;
+                deviance += least * frame.deviance;
+            }
+            corrected_akaike_criterion(deviance, estimate.effective_parameters, independent)
+        };
+        estimates.iter().map(criterion).collect()
     }
 
     /// Root mean square of the errors of predicted forces relative to that of the measured ones; `None` where none was predicted.

@@ -49,7 +49,7 @@ pub struct FrameInformation {
     pub spread: DMatrix<f64>,
     /// The markers' part of Jₖ.
     pub spread_of_markers: DMatrix<f64>,
-    /// −2 ln L of its independent values.
+    /// −2 ln L of one of its independent values.
     pub deviance: f64,
     /// The contribution of its discretisation error to the score, if that is known.
     pub mesh: Option<Step>,
@@ -162,10 +162,10 @@ impl<'a> Frame<'a> {
             * noise.map_or(markers, |noise| {
                 noise.correlation.independent(sites.positions())
             });
-        let markers_deviance = if observations.known_noise {
-            nearest.misfit(&nearest.fit, &nearest.variances) * independent / (2.0 * markers)
+        let deviance = if observations.known_noise {
+            nearest.misfit(&nearest.fit, &nearest.variances) / (2.0 * markers)
         } else {
-            independent * nearest.variances.variance.ln()
+            nearest.variances.variance.ln()
         };
         let (effective, residuals) = (nearest.fit.effective, self.residuals(&nearest));
         let variances = nearest.variances.clone();
@@ -186,7 +186,7 @@ impl<'a> Frame<'a> {
             mesh: about.mesh.map(|target| &reduced.projection * target),
             common: about.common.map(|target| &reduced.projection * target),
             force_misfit: reduced.force_misfit,
-            deviance: markers_deviance + reduced.force_misfit,
+            deviance,
             information: reduced.information,
             effective,
             independent,
