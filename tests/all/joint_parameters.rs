@@ -120,6 +120,31 @@ fn two_specimens_give_two_parameters_a_card_and_a_ranking() {
     }
 }
 
+/// Without the rows of markers on the edges the sheet may be as wide as the next row would be, which moduli have in their intervals.
+#[test]
+fn moduli_hold_the_truth_where_the_edge_is_not_known() {
+    let folder = folder();
+    for name in ["a", "b"] {
+        let [field, specimen] =
+            ["csv", "toml"].map(|ending| folder.path().join(format!("{name}.{ending}")));
+        let text = fs::read_to_string(&field).unwrap();
+        let inner = text.lines().filter(|row| {
+            let y = row.split(',').nth(2).unwrap();
+            y != "0" && y != "20"
+        });
+        fs::write(&field, inner.collect::<Vec<_>>().join("\n")).unwrap();
+        let text = fs::read_to_string(&specimen).unwrap();
+        fs::write(&specimen, text.replace("edge_gap = \"0 mm\"\n", "")).unwrap();
+    }
+    gelbench(folder.path(), &TWO);
+    let actual = report_of_correction(folder.path());
+    let parameters = actual["problem"]["parameters"].as_array().unwrap();
+    for (parameter, truth) in parameters.iter().zip(TRUTH) {
+        let [low, high] = [0, 1].map(|end| parameter["interval"][end].as_f64().unwrap());
+        assert!(low < truth && truth < high, "{parameter}");
+    }
+}
+
 #[test]
 fn a_wrong_thickness_of_one_specimen_is_told_and_leaves_no_interval() {
     let folder = folder();

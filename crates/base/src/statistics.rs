@@ -110,6 +110,14 @@ impl Estimate {
         (low..=high).contains(&value)
     }
 
+    /// The estimate with the end of its interval moved on the side of `by`.
+    #[must_use]
+    pub fn widened(mut self, by: f64) -> Self {
+        let end = usize::from(by >= 0.0);
+        self.interval[end] += by;
+        self
+    }
+
     /// A value without uncertainty.
     pub fn exact(value: f64) -> Self {
         Self::new(value, 0.0, 0.0)

@@ -130,11 +130,25 @@ fn outcome(
         reach: reach(descent, sum(|part| part.independent) - effective),
         directions: &directions,
     };
+    let frames = frame_outcomes(descent, &course, &parts, &inverse, settings.groups, watch)?;
+    let shares = frames.iter().zip(&parts);
+    let growth: f64 = shares.map(|(frame, part)| frame.share * part.growth).sum();
+    let intervals = ends.intervals(settings.profiles).into_iter();
+    let parameters = intervals
+        .zip(law.parameters())
+        .map(|(estimate, parameter)| {
+            // A modulus falls by as much as forces grow.
+            if parameter.unit() == "MPa" {
+                estimate.widened(estimate.value / (1.0 + growth) - estimate.value)
+            } else {
+                estimate
+            }
+        });
     Ok(JointEstimate {
-        parameters: ends.intervals(settings.profiles),
+        parameters: parameters.collect(),
         law,
         holds_mesh_error: mesh.is_some(),
-        frames: frame_outcomes(descent, &course, &parts, &inverse, settings.groups, watch)?,
+        frames,
         common,
         force_scatter,
         effective_parameters: effective,

@@ -61,6 +61,8 @@ pub struct FrameInformation {
     pub effective: f64,
     /// Number of independent values of its markers.
     pub independent: f64,
+    /// The relative growth of its forces where its free edges lie farther out by the gap that is not known.
+    pub growth: f64,
     /// The residuals of its trusted markers by their numbers.
     residuals: BTreeMap<usize, [f64; 2]>,
 }
@@ -169,6 +171,7 @@ impl<'a> Frame<'a> {
         };
         let (effective, residuals) = (nearest.fit.effective, self.residuals(&nearest));
         let variances = nearest.variances.clone();
+        let growth = nearest.growth() * self.source.knowledge.edge_gap.unwrap_or(0.0);
         let difference = nearest.mesh_difference();
         let about = self.law_equations(nearest, law, difference.as_ref())?;
         let reduced = about.reduced;
@@ -190,6 +193,7 @@ impl<'a> Frame<'a> {
             information: reduced.information,
             effective,
             independent,
+            growth,
             residuals,
         })
     }

@@ -82,21 +82,15 @@ impl MarkerStudy {
         };
         let growth = estimate.growth * gap;
         for force in estimate.forces.iter_mut().flat_map(|edge| &mut edge.force) {
-            widen(force, growth * force.value);
+            *force = force.widened(growth * force.value);
         }
         for (_, unit, modulus) in &mut estimate.parameters {
             if *unit == "MPa" {
-                widen(modulus, modulus.value / (1.0 + growth) - modulus.value);
+                *modulus = modulus.widened(modulus.value / (1.0 + growth) - modulus.value);
             }
         }
         estimate
     }
-}
-
-/// Moves the end of an interval on the side of `by`.
-fn widen(estimate: &mut Estimate, by: f64) {
-    let [low, high] = &mut estimate.interval;
-    if by < 0.0 { *low += by } else { *high += by }
 }
 
 /// The relative error of the pictures' scale that is reported: a specimen 1 mm nearer to a camera 1 m away.

@@ -152,6 +152,7 @@ impl MarkerStudy {
                 markers: &frame.markers,
                 knowledge: Knowledge {
                     robust: self.conditions.robust.unwrap_or(Robust::Tukey),
+                    edge_gap: self.unknown_gap,
                     ..self.conditions.knowledge(frame.number, None)
                 },
             })
