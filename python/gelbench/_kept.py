@@ -100,7 +100,7 @@ def _of_results(core: _core.Results) -> dict[str, Any]:
         root = Path(folder) / "results"
         found["files"] = {os.fspath(path.relative_to(root)): path.read_bytes() for path in written}
     for number, (name, _) in enumerate(core.pictures()):
-        found[f"picture{(number,)}"] = found["files"].get(f"{name}.png") or core.picture(number)
+        found[f"picture{(number,)}"] = found["files"].get(name) or core.picture(number)
     return found
 
 
