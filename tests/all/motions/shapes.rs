@@ -118,6 +118,25 @@ fn a_slender_strip_in_tension_vibrates_as_a_stiff_string() {
         (actual / expected - 1.0).abs() < 5e-3,
         "{actual} {expected}"
     );
+    // The springs deviate as far as they do in the middle; of the displacement with the 30 mm by which it is held, a hundredth as far.
+    let of_springs = table(folder.path(), "out/motion_mass_spring.csv");
+    let of_springs = column(&of_springs, "middle displacement y [mm]");
+    let pairs = of_springs.iter().zip(&across);
+    let (wrong, size) = pairs.fold((0.0_f64, 0.0_f64), |(wrong, size), (springs, elements)| {
+        (
+            wrong + (springs - elements).powi(2),
+            size + elements * elements,
+        )
+    });
+    let in_the_middle = 100.0 * (wrong / size).sqrt();
+    let checks = report["checks"].as_array().unwrap();
+    let name = "mass-spring: displacement since the start over all instants";
+    let check = checks.iter().find(|check| check["quantity"] == name);
+    let told = check.unwrap()["computed"].as_f64().unwrap();
+    assert!(
+        told > 0.5 * in_the_middle && told < 2.0 * in_the_middle,
+        "{told} % {in_the_middle} %"
+    );
 }
 
 /// A traction that increases slowly leads to the displacement of the study at rest.

@@ -1,5 +1,6 @@
 //! Deviations of a motion from the finite elements', and the discretisation error of these.
 
+use super::functions::rates;
 use super::problem::MovingSheet;
 use super::solution::{ModelMotion, Motions};
 use crate::compare::judgement::percent;
@@ -9,7 +10,7 @@ use crate::mesh::Mesh;
 use crate::solve::vector::difference;
 use crate::studies::Progress;
 
-/// The deviations of a motion on the lattice from the finite elements'.
+/// The deviations of a motion on the lattice from the finite elements', of all that [`since_start`] says.
 pub struct Deviations {
     /// Of the displacement at each instant, in relative L2 over the largest of all instants, in %.
     pub displacement: Vec<f64>,
@@ -29,21 +30,20 @@ impl Deviations {
     ) -> Self {
         let weights = lumped_mass(lattice, 1.0, 1.0);
         let square = |u: &[f64]| u.iter().zip(&weights).map(|(u, w)| w * u * u).sum::<f64>();
+        let is_change = since_start(sheet);
         let fields = model.displacements_on(lattice);
-        let errors: Vec<f64> = fields
-            .iter()
-            .zip(expected)
-            .map(|(now, expected)| square(&difference(now, expected)))
+        let errors: Vec<f64> = measured(is_change, &fields)
+            .zip(measured(is_change, expected))
+            .map(|(now, expected)| square(&difference(&now, &expected)))
             .collect();
-        let sizes: Vec<f64> = expected.iter().map(|u| square(u)).collect();
+        let sizes: Vec<f64> = measured(is_change, expected).map(|u| square(&u)).collect();
         let largest = sizes.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
         let displacement = errors.iter().map(|error| 100.0 * (error / largest).sqrt());
         let [all, size] =
             [&errors, &sizes[..errors.len()]].map(|values| values.iter().sum::<f64>());
         let [forces, expected_forces] = [model, elements].map(|model| sheet.measured_forces(model));
-        let pairs = forces
-            .iter()
-            .zip(&expected_forces)
+        let pairs = measured(is_change, &forces)
+            .zip(measured(is_change, &expected_forces))
             .flat_map(|(now, expected)| {
                 [0, 1].map(|axis| ((now[axis] - expected[axis]).powi(2), expected[axis].powi(2)))
             });
@@ -66,6 +66,22 @@ impl Deviations {
         };
         (of(springs), motions.correction.motion.as_ref().map(of))
     }
+}
+
+/// Whether deviations are of the changes since the start: those of a sheet that its supports hold at a load factor, and that forces or
+/// gravity alone set in motion. The state in which it is held is no part of its motion, and may be a hundred times larger.
+pub fn since_start(sheet: &MovingSheet) -> bool {
+    let is_held = sheet.drive.release.is_none() && rates(&sheet.drive.factor).is_none();
+    is_held && !sheet.specimen.factors.is_empty() && sheet.is_loaded()
+}
+
+/// Fields or forces at the instants, or their changes since the first.
+fn measured<V: AsRef<[f64]>>(is_change: bool, values: &[V]) -> impl Iterator<Item = Vec<f64>> {
+    let start = values.first().filter(|_| is_change);
+    values.iter().map(move |now| match start {
+        Some(start) => difference(now.as_ref(), start.as_ref()),
+        None => now.as_ref().to_vec(),
+    })
 }
 
 /// The finite elements' discretisation error over all instants, estimated from cells twice and four times as large and from steps half as long.

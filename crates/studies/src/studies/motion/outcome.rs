@@ -2,7 +2,7 @@
 
 use serde_json::json;
 
-use super::deviations::{Deviations, DiscretisationError};
+use super::deviations::{Deviations, DiscretisationError, since_start};
 use super::files::{animation, figures, grids, springs_table, tables};
 use super::headline::headline;
 use super::problem::MovingSheet;
@@ -86,7 +86,12 @@ fn blocks(
         Block::Paragraph(motions.correction.note.clone()),
         Block::Paragraph(compared(sheet, deviations, own_error)),
         Block::Paragraph(format!(
-            "Deviation at some instants, relative to the largest displacement field of the finite elements, and force of the {}:",
+            "Deviation at some instants, relative to the largest {} of the finite elements, and force of the {}:",
+            if since_start(sheet) {
+                "change of the displacement field"
+            } else {
+                "displacement field"
+            },
             sheet.measured_name()
         )),
         in_time(sheet, motions, deviations),
@@ -192,6 +197,9 @@ fn compared(
     own_error: Option<&DiscretisationError>,
 ) -> String {
     let mut text = String::new();
+    if since_start(sheet) {
+        text += "The supports only hold the sheet, so that displacements and forces are compared by their changes since the start. ";
+    }
     let of_corrected = of_corrected
         .as_ref()
         .map(|deviations| ("corrected motion", deviations));
@@ -298,9 +306,14 @@ fn checks(
     } else {
         "over all instants".to_owned()
     };
+    let change = if since_start(sheet) {
+        " since the start"
+    } else {
+        ""
+    };
     let deviation = |quantity: &str, limit: f64, value: f64, error: Option<f64>| {
         let error = error.unwrap_or(f64::NAN);
-        let check = check(format!("{name}: {quantity} {over}"), limit, value);
+        let check = check(format!("{name}: {quantity}{change} {over}"), limit, value);
         check.judged(judge_by_margin(value, error, limit, &remedy(sheet)), error)
     };
     let error = own_error.map(|error| error.displacement);

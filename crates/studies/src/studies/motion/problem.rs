@@ -239,6 +239,12 @@ impl MovingSheet {
         })
     }
 
+    /// Whether gravity or forces act besides supports and loads.
+    pub(super) fn is_loaded(&self) -> bool {
+        let mut forces = self.forces.iter();
+        self.gravity != [0.0; 2] || forces.any(|point| point.force != [0.0; 2])
+    }
+
     /// Whether the support of a group is released.
     fn is_released(&self, group: &str) -> bool {
         self.drive.release.is_some() && group == self.specimen.group

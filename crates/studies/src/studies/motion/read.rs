@@ -215,9 +215,7 @@ fn warn_of_rest(root: &Section, start: f64, sheet: &MovingSheet) {
     let is_driven =
         problem.supports.iter().any(|(_, support)| !support.rests()) || !problem.loads.is_empty();
     let stays = start == 0.0 && reached(&sheet.drive.factor) == [0.0; 2];
-    let is_loaded =
-        sheet.gravity != [0.0; 2] || sheet.forces.iter().any(|force| force.force != [0.0; 2]);
-    if is_loaded || is_driven && !stays {
+    if sheet.is_loaded() || is_driven && !stays {
         return;
     }
     let (message, hint) = match sheet.specimen.along {
