@@ -114,6 +114,8 @@ fn a_strip_is_loaded_unloaded_and_loaded_again() {
         );
         assert!(force(8) < force(2), "{model}");
         assert!(of(3, "stored_mJ") > 0.0);
+        // The strain energy is what can be recovered, as in the grids.
+        assert_eq!(of(8, "energy_mJ"), of(8, "stored_mJ"), "{model}");
     }
     let page = fs::read_to_string(folder.path().join("output/softening_strip/report.md")).unwrap();
     assert!(page.contains("Stored and dissipated energy"));

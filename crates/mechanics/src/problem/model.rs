@@ -163,8 +163,12 @@ impl<'a> Model<'a> {
         After::new(self.energy, history)
     }
 
-    /// The strain energy in mJ of an equilibrium, without the potential of loads; NaN where it is inverted. Without loads it is the potential.
+    /// The strain energy in mJ that is stored in an equilibrium, without what is dissipated and without the potential of loads; NaN where it is
+    /// inverted. Without memory and loads it is the potential.
     pub fn strain_energy(&self, equilibrium: &State) -> f64 {
+        if let Some(work) = self.work(equilibrium) {
+            return work.stored;
+        }
         if self.loads.is_empty() {
             return equilibrium.convergence.energy;
         }

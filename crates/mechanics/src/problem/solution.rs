@@ -17,7 +17,7 @@ pub struct Solution {
     groups: Vec<Vec<GroupState>>,
     /// The resultant of all forces and moments together, relative to the largest of them, in each state.
     pub balances: Vec<f64>,
-    /// The strain energy of each state in mJ.
+    /// The strain energy that is stored in each state, in mJ.
     pub energies: Vec<f64>,
     /// The work done on the material up to each state; `None` where it has no memory.
     pub works: Vec<Option<Work>>,
