@@ -164,6 +164,16 @@ mod tests {
         }
     }
 
+    /// As the guide states: C₁₁₂₂ = C₁₂₁₂ is 3/7 of the sheet's, and C₁₁₁₁ − C₁₁₂₂²/C₁₁₁₁ = 1.10 E.
+    #[test]
+    fn halved_squares_are_too_stiff_in_tension_and_too_soft_in_shear() {
+        let mesh = Mesh::plate([6.0, 6.0], [6, 6], CellShape::Quad4).triangulated();
+        let computed = tensor(&mesh, 36.0);
+        for (computed, expected) in computed.iter().zip([9.0 / 8.0, 9.0 / 56.0, 9.0 / 8.0]) {
+            assert!((computed - expected).abs() < 1e-12, "{computed}");
+        }
+    }
+
     #[test]
     fn equilateral_triangles_have_it_too_and_no_section_is_negative() {
         let h = 3.0_f64.sqrt() / 2.0;

@@ -146,7 +146,7 @@ impl Scene<'_> {
     fn remarks(&self) -> Vec<String> {
         let card = self.card;
         let mut remarks = vec![
-            "the springs are linear, with the stiffness that those of gelbench have at rest: both agree at small strains"
+            "the springs are linear, with the stiffness that those of gelbench have at rest: both lattices agree at small strains"
                 .to_owned(),
         ];
         if card.density.is_none() {
