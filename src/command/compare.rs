@@ -71,6 +71,8 @@ struct Comparison {
     factor: f64,
     imported: ExternalField,
     sites: Sites,
+    /// The doubt about the file's unit of length that its places raise.
+    unit: Option<Diagnostic>,
     models: ModelFields,
 }
 
@@ -126,7 +128,9 @@ fn compute(options: &Options) -> Result<Comparison, Error> {
     let last = specimen.factors[specimen.factors.len() - 1];
     let factor = options.factor.unwrap_or(last);
     check_factor(&specimen, factor, last)?;
-    let (imported, sites) = import(options, factor, &specimen.outline.lattice())?;
+    let lattice = specimen.outline.lattice();
+    let (imported, sites) = import(options, factor, &lattice)?;
+    let unit = window(options, &sites, &lattice);
     Ok(Comparison {
         title,
         law: Arc::clone(&specimen.problem.law),
@@ -135,6 +139,7 @@ fn compute(options: &Options) -> Result<Comparison, Error> {
         factor,
         imported,
         sites,
+        unit,
         models: specimen::fields(specimen, factor, progress)?,
     })
 }
@@ -176,11 +181,22 @@ fn import(options: &Options, factor: f64, lattice: &Mesh) -> Result<(ExternalFie
             "give places at rest in the axes of the study, and their unit with --unit",
         )
     })?;
-    if let Some(warning) = sites.window(lattice) {
-        let hint = "if the field is that of a whole specimen, this study has another size";
-        warn(&[Diagnostic::warning("", warning).hint(hint)]);
-    }
     Ok((imported, sites))
+}
+
+/// Warns of places that span a part of the specimen; a doubt where in another unit of length, and none is stated, they would span all of it.
+fn window(options: &Options, sites: &Sites, lattice: &Mesh) -> Option<Diagnostic> {
+    let message = sites.window(lattice)?;
+    let other = sites.other_unit(lattice).filter(|_| options.unit.is_none());
+    let Some(unit) = other else {
+        let hint = "if the field is that of a whole specimen, this study has another size";
+        warn(&[Diagnostic::warning("", message).hint(hint)]);
+        return None;
+    };
+    let message = format!("{message}; in {unit} they would span all of it");
+    let hint =
+        format!("state the file's unit with --unit {unit}, or with --unit mm if they are a window");
+    Some(Diagnostic::warning("", message).hint(hint))
 }
 
 /// Displacements that all models find larger or smaller by one factor, be it the ratio of two
@@ -188,7 +204,8 @@ fn import(options: &Options, factor: f64, lattice: &Mesh) -> Result<(ExternalFie
 fn doubts(compared: &Comparison, differences: &[Difference]) -> Vec<Diagnostic> {
     let ratios: Option<Vec<f64>> = differences.iter().map(Difference::other_unit).collect();
     let ratio = ratios.filter(|ratios| ratios.iter().all(|ratio| *ratio == ratios[0]));
-    let doubt = ratio.map(|ratios| {
+    let of_places = compared.unit.clone();
+    let of_displacements = ratio.map(|ratios| {
         let relation = if differences[0].factor.abs() > 1.0 { "small" } else { "large" };
         let message = format!(
             "the imported displacements are about {} times too {relation}, as if in another unit of length",
@@ -197,7 +214,7 @@ fn doubts(compared: &Comparison, differences: &[Difference]) -> Vec<Diagnostic> 
         Diagnostic::warning("", message).hint("state the file's unit with --unit")
     });
     let scaled = differences.iter().all(Difference::is_scaled);
-    let doubt = doubt.or_else(|| {
+    let doubt = of_places.or(of_displacements).or_else(|| {
         let share = 1.0 / differences[0].factor;
         let at = compared.factor;
         scaled.then(|| {

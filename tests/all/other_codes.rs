@@ -192,6 +192,36 @@ fn a_comparison_says_what_a_run_says_and_which_part_is_a_motion_of_the_whole_bod
     );
 }
 
+/// A file in cm under heads in mm is a field on a corner of the specimen, which is as little off as the strain is uniform.
+#[test]
+fn a_field_in_another_unit_than_its_heads_say_is_doubted() {
+    let folder = folder_with(SMALL);
+    let position = folder.path();
+    gelbench(position, &["run", "small.toml", "--output", "out"]);
+    let field = position.join("out/vtk/finite_element_001.vtu");
+    let field = import_field(&field, 1.0, None, 1.0).unwrap();
+    let nodes = field.mesh.nodes.iter().zip(field.displacement.chunks(2));
+    let rows = nodes.map(|([x, y], u)| {
+        let [x, y, ux, uy] = [*x, *y, u[0], u[1]].map(|millimetres| 0.1 * millimetres);
+        format!("{x},{y},{ux},{uy}\n")
+    });
+    let table = format!(
+        "X [mm],Y [mm],ux [mm],uy [mm]\n{}",
+        rows.collect::<String>()
+    );
+    fs::write(position.join("cm.csv"), table).unwrap();
+    let compare = ["compare", "small.toml", "cm.csv"];
+    let done = gelbench(position, &compare).code(1);
+    let message = words(&done.get_output().stderr);
+    assert!(
+        message.contains("in cm they would span all of it") && message.contains("--unit cm"),
+        "{message}"
+    );
+    let stated = [&compare[..], &["--unit", "cm"]].concat();
+    let done = gelbench(position, &stated).code(0);
+    assert!(deviation(&words(&done.get_output().stdout)) < 1e-3);
+}
+
 #[test]
 fn fields_on_meshes_that_are_fine_where_they_must_come_in_again() {
     for study in [

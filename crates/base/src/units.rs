@@ -147,6 +147,15 @@ pub fn is_known(unit: &str) -> bool {
     !matches!(parsed, Err(QuantityFault::UnknownUnit(_)))
 }
 
+/// The first unit of length whose size in mm meets a condition.
+pub fn length_unit(is_it: impl Fn(f64) -> bool) -> Option<&'static str> {
+    let mut lengths = UNITS
+        .iter()
+        .filter(|(_, dimension, _)| *dimension == Dimension::Length);
+    let found = lengths.find(|(.., millimetres)| is_it(*millimetres));
+    found.map(|(symbol, ..)| *symbol)
+}
+
 /// Length in bytes of the decimal number at the beginning of `text`.
 pub fn number_length(text: &str) -> usize {
     let bytes = text.as_bytes();

@@ -18,7 +18,7 @@ use crate::mesh::{
     ImportedField, Mesh, import_field, largest_distance, weighted_distance, weighted_norm,
 };
 use crate::problem::RigidMotion;
-use crate::units::{decimals, extents};
+use crate::units::{decimals, extents, length_unit};
 
 mod table;
 
@@ -132,6 +132,8 @@ impl Difference {
 const NEAR_CELLS: f64 = 0.25;
 /// Largest relative difference of the boxes around meshes of the same specimen.
 const NEAR_SIZE: f64 = 0.02;
+/// Least part of the specimen's length and width that points all over it span.
+const NEARLY_ALL: f64 = 0.9;
 
 /// Why a field cannot be compared with those of a specimen.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
@@ -259,7 +261,6 @@ impl Sites {
 
     /// A remark on sites that cover only a window of the specimen; `None` where they cover all of it.
     pub fn window(&self, specimen: &Mesh) -> Option<String> {
-        const NEARLY_ALL: f64 = 0.9;
         let (extent, full) = (sides(self.positions.iter().copied()), specimen.size());
         let is_window = (0..2).any(|axis| extent[axis] < NEARLY_ALL * full[axis]);
         is_window.then(|| {
@@ -268,6 +269,17 @@ impl Sites {
                 extents(extent),
                 extents(full)
             )
+        })
+    }
+
+    /// The unit of length, read as mm, in which the sites would span all of the specimen in both directions.
+    pub fn other_unit(&self, specimen: &Mesh) -> Option<&'static str> {
+        let (extent, full) = (sides(self.positions.iter().copied()), specimen.size());
+        length_unit(|unit| {
+            (0..2).all(|axis| {
+                let part = unit * extent[axis] / full[axis];
+                (NEARLY_ALL..=1.0 / NEARLY_ALL).contains(&part)
+            })
         })
     }
 
