@@ -130,6 +130,20 @@ fn a_strip_is_loaded_unloaded_and_loaded_again() {
 }
 
 #[test]
+fn a_history_that_ends_at_rest_is_told_how_to_unload() {
+    let folder = fitted();
+    let study = fs::read_to_string(folder.path().join("softening_strip.toml")).unwrap();
+    for (end, code) in [("0.0", 2), ("0.001", 0)] {
+        let factors = format!("1.0, {end}");
+        let study = study.replace("0.3, 0.6, 0.3, 0.1, 0.3, 0.6, 1.0, 0.6, 0.3", &factors);
+        fs::write(folder.path().join("study.toml"), study).unwrap();
+        let done = gelbench(folder.path(), &["check", "study.toml"]).code(code);
+        let message = words(&done.get_output().stderr);
+        assert_eq!(message.contains("such as 0.001"), code == 2, "{message}");
+    }
+}
+
+#[test]
 fn what_has_no_memory_refuses_the_card() {
     let folder = fitted();
     let example =

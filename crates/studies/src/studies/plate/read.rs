@@ -252,7 +252,11 @@ fn read_stretches(section: &Section<'_>, card: Option<&Card>, cells: [usize; 2])
     }
     let remembers = card.is_some_and(|card| card.law.softening().is_some());
     if stretches.iter().any(|stretch| stretch.abs() < SMALLEST) {
-        let hint = "at rest there is nothing to solve; leave it out";
+        let hint = if remembers {
+            "at rest there is nothing to solve; to unload, take a small one, such as \"0.1 %\""
+        } else {
+            "at rest there is nothing to solve; leave it out"
+        };
         section.fault(KEY, "must not contain zero, or less than 1e-9", hint);
         return stretches;
     }

@@ -221,6 +221,10 @@ fn only_a_material_that_softens_is_unloaded() {
         &format!("{direct}[load]\nstretches = [\"30 %\", \"30 %\"]\n"),
         &["must differ"],
     );
+    refused(
+        &format!("{direct}[load]\nstretches = [\"30 %\", \"0 %\"]\n"),
+        &["must not contain zero", "to unload", "0.1 %"],
+    );
 }
 
 #[test]

@@ -23,7 +23,18 @@ const LARGE_FACTORS: [f64; 2] = [5.0, 10.0];
 
 /// The load factors, ascending unless the material remembers how it was loaded.
 fn read_factors(path: &Section, remembers: bool) -> Vec<f64> {
-    let factors = path.multiples("factors", Bound::Positive, f64::INFINITY);
+    let bound = if remembers {
+        Bound::NonNegative
+    } else {
+        Bound::Positive
+    };
+    let factors = path.multiples("factors", bound, f64::INFINITY);
+    if factors.contains(&0.0) {
+        let hint =
+            "at rest there is nothing to solve; to unload, take a small factor, such as 0.001";
+        path.fault("factors", "must be greater than zero", hint);
+        return factors;
+    }
     let falls = factors.windows(2).any(|pair| {
         if remembers {
             pair[1] == pair[0]
