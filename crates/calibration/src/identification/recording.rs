@@ -299,4 +299,14 @@ mod tests {
             "4 mm according to the header and 5 mm according to the command line",
         );
     }
+
+    #[test]
+    fn one_mass_in_two_units_is_no_contradiction() {
+        let head = "# mass: 200 g\n# mass: 0.2 kg\n# length: 5 cm\ntime [s],extension [mm],force [N]\n";
+        let table = Table::parse("a.csv", &format!("{head}{}", rows(40))).unwrap();
+        let given = [("mass", "0.2 kg"), ("length", "50.0 mm")];
+        let given = given.map(|(key, value)| (key.to_owned(), value.to_owned()));
+        let recording = Recording::of_table(&table, &Statements::from(given)).unwrap();
+        assert!((recording.mass / 2e-4 - 1.0).abs() < 1e-12);
+    }
 }
