@@ -21,11 +21,11 @@
 
 use crate::error::Error;
 use crate::solve::vector::largest;
-use crate::statistics::{BSpline, Ends, extremes};
+use crate::statistics::extremes;
 use band::reach;
 use joint::{Joint, JointEquations, State};
 use penalty::PenalisedFit;
-use smoothing::{SignalSpline, SplineValues, bridged_parts, nearest, smooth, wanted_parts};
+use smoothing::{FEWEST_IN_MOTION, SignalSpline, SplineValues, nearest, smooth, wanted_parts};
 
 mod band;
 mod basis;
@@ -42,7 +42,7 @@ mod verdict;
 
 pub use band::Function;
 pub use basis::{Basis, Form, Shape, UnknownForm};
-use corners::corners;
+use corners::{corners, spikes};
 pub use joint::Argument;
 pub use law_text::law_text;
 pub use recording::Recording;
@@ -60,9 +60,6 @@ const CHOICES: usize = 6;
 
 /// The iteration ends when the penalised sum of squares falls by less than this, relative to the misfit; a change of one is a standard error.
 const SETTLED: f64 = 1e-3;
-
-/// Least number of instants for each part of the motion; both signals count at each instant.
-const FEWEST_IN_MOTION: usize = 2;
 
 /// Least noise, relative to the largest value of its signal: the rounding of sums in floating point.
 const LEAST_NOISE: f64 = 1e-9;
@@ -147,16 +144,13 @@ fn begin<'a>(
     (extension, force): &(SignalSpline, SignalSpline),
 ) -> Option<(Joint<'a>, State)> {
     let times = &recording.times;
-    let span = [times[0], times[times.len() - 1]];
-    let mut intervals = wanted_parts(extension, force)
-        .min(times.len() / FEWEST_IN_MOTION)
-        .min(bridged_parts(times));
+    let wanted = wanted_parts(extension, force).min(times.len() / FEWEST_IN_MOTION);
+    let mut intervals = wanted;
     let (spline, motion) = loop {
-        let spline = BSpline::new(span, intervals, 5, Ends::Uniform);
-        match nearest(&spline, times, &recording.extension) {
-            Ok(motion) => break (spline, motion),
-            Err(_) if intervals > 1 => intervals -= 1 + intervals / 9,
-            Err(_) => return None,
+        match nearest(times, &recording.extension, intervals, 5) {
+            Some(fitted) => break fitted,
+            None if intervals > 1 => intervals -= 1 + intervals / 9,
+            None => return None,
         }
     };
     let orders = [0, 1, 2].map(|order| SplineValues::new(&spline, times, order));
@@ -178,6 +172,8 @@ fn begin<'a>(
     ];
     let joint = Joint {
         recording,
+        runs: spline.runs(),
+        is_bridged: 2 * intervals < wanted,
         orders,
         noise,
         functions,
@@ -300,7 +296,7 @@ impl<'a> Fit<'a> {
             settings,
             stiffness,
             damping,
-            motion: self.motion(),
+            motion: FittedMotion::new(joint, &self.state),
             noise: joint.noise,
             misfit,
             freedom,
@@ -318,9 +314,25 @@ impl<'a> Fit<'a> {
         signals: &(SignalSpline, SignalSpline),
     ) -> Identification {
         let joint = self.joint;
-        let corners = corners(&joint.recording.times, &joint.recording.extension);
+        let Recording {
+            times,
+            extension,
+            force,
+            ..
+        } = joint.recording;
+        let spikes = |signal: &[f64]| spikes(times, signal, &joint.runs);
+        let corners = corners(times, extension, &joint.runs);
+        // A motion with corners has steps of the force.
+        let spikes_of_force = if corners.is_none() {
+            spikes(force)
+        } else {
+            Vec::new()
+        };
+        let spikes = [spikes(extension), spikes_of_force];
         // Where a spline cannot follow the motion, instants of the recording would wrongly seem suspect.
-        let suspects = if !signals.0.coarse && !signals.1.coarse && corners.is_none() {
+        let is_followed =
+            !signals.0.coarse && !signals.1.coarse && corners.is_none() && !joint.is_bridged;
+        let suspects = if is_followed && spikes.iter().all(Vec::is_empty) {
             examine(joint, &self.state, &identification, fit)
         } else {
             Vec::new()
@@ -328,6 +340,8 @@ impl<'a> Fit<'a> {
         let evidence = Evidence {
             recording: joint.recording,
             signals,
+            spikes,
+            is_bridged: joint.is_bridged,
             corners,
             suspects: &suspects,
         };
@@ -338,17 +352,5 @@ impl<'a> Fit<'a> {
             identification.damping.withhold_intervals();
         }
         identification
-    }
-
-    fn motion(&self) -> FittedMotion {
-        let mut motion = FittedMotion::default();
-        for instant in 0..self.joint.recording.times.len() {
-            let at = self.joint.instant(instant, &self.state);
-            motion.extension.push(at.extension);
-            motion.rate.push(at.rate);
-            motion.acceleration.push(at.acceleration);
-            motion.force.push(at.force);
-        }
-        motion
     }
 }

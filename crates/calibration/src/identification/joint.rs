@@ -1,5 +1,7 @@
 //! The motion from which both signals follow.
 
+use std::ops::Range;
+
 use nalgebra::{DMatrix, DVector};
 
 use super::basis::{Basis, Form, Shape};
@@ -28,6 +30,10 @@ impl Argument {
 /// Both signals with their noise, and the motion's spline with its derivatives at all instants.
 pub struct Joint<'a> {
     pub recording: &'a Recording,
+    /// The instants between gaps, over each of which the motion has a spline of its own.
+    pub runs: Vec<Range<usize>>,
+    /// Whether the motion's spline has less than half of the wanted parts, because too few instants lie between some gaps.
+    pub is_bridged: bool,
     /// Values, first and second derivatives.
     pub orders: [SplineValues; 3],
     /// Standard deviations of extension and force.
@@ -98,6 +104,7 @@ impl Joint<'_> {
             Form::Constant | Form::Polynomial(_) => basis,
         });
         Self {
+            runs: self.runs.clone(),
             orders: self.orders.clone(),
             functions,
             ..*self

@@ -302,7 +302,8 @@ mod tests {
 
     #[test]
     fn one_mass_in_two_units_is_no_contradiction() {
-        let head = "# mass: 200 g\n# mass: 0.2 kg\n# length: 5 cm\ntime [s],extension [mm],force [N]\n";
+        let head =
+            "# mass: 200 g\n# mass: 0.2 kg\n# length: 5 cm\ntime [s],extension [mm],force [N]\n";
         let table = Table::parse("a.csv", &format!("{head}{}", rows(40))).unwrap();
         let given = [("mass", "0.2 kg"), ("length", "50.0 mm")];
         let given = given.map(|(key, value)| (key.to_owned(), value.to_owned()));

@@ -1,4 +1,6 @@
-//! Least-squares splines of a signal over time, with as many parts as its noise allows.
+//! Least-squares splines of a signal over time, with as many parts as its noise allows, and anew after every gap.
+
+use std::ops::Range;
 
 use crate::solve::vector::{difference, largest, norm};
 use crate::solve::{Cholesky, FactorFault, SymmetricPattern};
@@ -12,9 +14,12 @@ const FEWEST: usize = 4;
 /// motion couples them.
 const FINER: usize = 4;
 
-/// Parts of the motion that the longest interval between two instants may span: with more empty parts a spline is hardly determined, and oscillates
-/// there.
+/// Parts of a spline that an interval between two instants may span: with more empty parts a spline is hardly determined, and oscillates
+/// there. A longer interval is a gap.
 const BRIDGED: f64 = 1.5;
+
+/// Least number of instants for each part of the motion; both signals count at each instant.
+pub const FEWEST_IN_MOTION: usize = 2;
 
 /// The share of a signal's largest value below which a deviation is no evidence against a body: sensors are not more linear, and splines of
 /// a motion without noise not more exact.
@@ -38,11 +43,69 @@ pub struct SplineValues {
     pub rows: Vec<(usize, LocalValues)>,
 }
 
+/// A spline over time that begins anew after every gap between instants: nothing is known of a signal there.
+#[derive(Clone, Debug)]
+pub struct PiecewiseSpline {
+    pieces: Vec<Piece>,
+}
+
+/// A run of instants without a gap.
+#[derive(Clone, Debug)]
+struct Piece {
+    instants: Range<usize>,
+    spline: BSpline,
+    /// The first of its functions among those of all pieces.
+    first: usize,
+}
+
+impl PiecewiseSpline {
+    /// Parts as long as `intervals` equal ones of the duration; `None` where too few instants lie between two gaps.
+    pub fn new(times: &[f64], intervals: usize, degree: usize) -> Option<Self> {
+        let part = (times[times.len() - 1] - times[0]) / intervals as f64;
+        let mut pieces = Vec::new();
+        let (mut instant, mut first) = (0, 0);
+        for run in times.chunk_by(|before, after| after - before <= BRIDGED * part) {
+            if run.len() < FEWEST_IN_MOTION * (degree + 1) {
+                return None;
+            }
+            let range = [run[0], run[run.len() - 1]];
+            let parts = ((range[1] - range[0]) / part).round() as usize;
+            let parts = parts.clamp(1, run.len() / FEWEST_IN_MOTION);
+            let spline = BSpline::new(range, parts, degree, Ends::Uniform);
+            pieces.push(Piece {
+                instants: instant..instant + run.len(),
+                spline,
+                first,
+            });
+            instant += run.len();
+            first += spline.count();
+        }
+        Some(Self { pieces })
+    }
+
+    /// The number of functions.
+    fn count(&self) -> usize {
+        self.pieces.iter().map(|piece| piece.spline.count()).sum()
+    }
+
+    /// The instants of each piece.
+    pub fn runs(&self) -> Vec<Range<usize>> {
+        let pieces = self.pieces.iter();
+        pieces.map(|piece| piece.instants.clone()).collect()
+    }
+}
+
 impl SplineValues {
-    /// Derivatives of some order at all `times`.
-    pub fn new(spline: &BSpline, times: &[f64], order: usize) -> Self {
+    /// Derivatives of some order at all `times`, those of the spline's pieces.
+    pub fn new(spline: &PiecewiseSpline, times: &[f64], order: usize) -> Self {
+        let rows = spline.pieces.iter().flat_map(|piece| {
+            times[piece.instants.clone()].iter().map(move |t| {
+                let (first, values) = piece.spline.local(*t, order);
+                (piece.first + first, values)
+            })
+        });
         Self {
-            rows: times.iter().map(|t| spline.local(*t, order)).collect(),
+            rows: rows.collect(),
         }
     }
 
@@ -105,13 +168,17 @@ impl BandMatrix {
     }
 }
 
-/// The coefficients of the spline nearest to `signal`.
-///
-/// # Errors
-/// [`FactorFault`] when the instants leave gaps of several parts.
-pub fn nearest(spline: &BSpline, times: &[f64], signal: &[f64]) -> Result<Vec<f64>, FactorFault> {
-    let sampled = SplineValues::new(spline, times, 0);
-    let mut matrix = BandMatrix::new(spline.count())?;
+/// The spline with parts as long as `intervals` equal ones of the duration, and its coefficients nearest to `signal`; `None` where the
+/// instants do not determine it.
+pub fn nearest(
+    times: &[f64],
+    signal: &[f64],
+    intervals: usize,
+    degree: usize,
+) -> Option<(PiecewiseSpline, Vec<f64>)> {
+    let spline = PiecewiseSpline::new(times, intervals, degree)?;
+    let sampled = SplineValues::new(&spline, times, 0);
+    let mut matrix = BandMatrix::new(spline.count()).ok()?;
     let mut right = vec![0.0; spline.count()];
     for ((first, row), value) in sampled.rows.iter().zip(signal) {
         matrix.add(*first, row);
@@ -119,19 +186,18 @@ pub fn nearest(spline: &BSpline, times: &[f64], signal: &[f64]) -> Result<Vec<f6
             *sum += b * value;
         }
     }
-    matrix.factorise()?.solve(&right)
+    let coefficients = matrix.factorise().ok()?.solve(&right).ok()?;
+    Some((spline, coefficients))
 }
 
 /// The number of equal parts for which generalised cross-validation, (‖y − ŷ‖²/n)/(1 − p/n)² with p functions, is
 /// least, and the noise √(‖y − ŷ‖²/(n − p)) of the residuals.
 pub fn smooth(times: &[f64], signal: &[f64], degree: usize) -> Option<SignalSpline> {
     let n = times.len() as f64;
-    let range = [times[0], times[times.len() - 1]];
     let mut best: Option<(f64, usize, f64)> = None;
     let (mut intervals, most) = (2, times.len() / FEWEST);
     while intervals <= most {
-        let spline = BSpline::new(range, intervals, degree, Ends::Uniform);
-        if let Ok(coefficients) = nearest(&spline, times, signal) {
+        if let Some((spline, coefficients)) = nearest(times, signal, intervals, degree) {
             let sampled = SplineValues::new(&spline, times, 0);
             let rows = signal.iter().enumerate();
             let squares = rows.map(|(i, y)| (y - sampled.value(i, &coefficients)).powi(2));
@@ -157,13 +223,6 @@ pub fn smooth(times: &[f64], signal: &[f64], degree: usize) -> Option<SignalSpli
 /// The parts of the motion that both signals ask for.
 pub fn wanted_parts(extension: &SignalSpline, force: &SignalSpline) -> usize {
     FINER * extension.intervals.max(force.intervals)
-}
-
-/// The parts of the motion that the longest interval between two instants allows.
-pub fn bridged_parts(times: &[f64]) -> usize {
-    let intervals = times.windows(2).map(|pair| pair[1] - pair[0]);
-    let longest = intervals.fold(f64::MIN_POSITIVE, f64::max);
-    ((BRIDGED * (times[times.len() - 1] - times[0]) / longest) as usize).max(1)
 }
 
 /// Whether the residuals of a signal are larger than sensors are linear and splines exact.
@@ -193,13 +252,29 @@ mod tests {
         );
     }
 
+    /// The noise of a signal is that of its runs, however long the gap between them.
     #[test]
-    fn instants_with_a_gap_take_a_spline_that_bridges_it() {
-        let mut times: Vec<f64> = (0..200).map(f64::from).collect();
-        times.retain(|t| !(60.0..90.0).contains(t));
-        let signal: Vec<f64> = times.iter().map(|t| (0.02 * t).sin()).collect();
-        assert!(smooth(&times, &signal, 5).is_some());
-        let fine = BSpline::new([0.0, 199.0], 60, 5, Ends::Uniform);
-        assert!(nearest(&fine, &times, &signal).is_err());
+    fn a_gap_changes_neither_the_parts_nor_the_noise() {
+        let times: Vec<f64> = (0..800).map(|i| 0.01 * f64::from(i)).collect();
+        let mut normal = normal_numbers(3);
+        let rows = times
+            .iter()
+            .map(|t| [*t, (9.0 * t).sin() + 0.05 * normal()]);
+        let rows = rows.filter(|[t, _]| !(3.0..3.8).contains(t));
+        let (times, signal): (Vec<f64>, Vec<f64>) = rows.map(|[t, y]| (t, y)).unzip();
+        let actual = smooth(&times, &signal, 5).unwrap();
+        assert!((actual.noise / 0.05 - 1.0).abs() < 0.08, "{actual:?}");
+        let (spline, coefficients) = nearest(&times, &signal, 60, 5).unwrap();
+        assert_eq!(spline.runs(), [0..300, 300..720]);
+        let sampled = SplineValues::new(&spline, &times, 1);
+        for (i, t) in times.iter().enumerate().skip(10).step_by(40) {
+            let (rate, exact) = (sampled.value(i, &coefficients), 9.0 * (9.0 * t).cos());
+            assert!((rate - exact).abs() < 2.0, "{t}: {rate} {exact}");
+        }
+        // Too few instants lie between two gaps for a motion to be known there.
+        let mut lonely = times;
+        lonely.retain(|t| !(3.85..4.5).contains(t));
+        assert!(PiecewiseSpline::new(&lonely, 60, 5).is_none());
+        assert!(PiecewiseSpline::new(&lonely, 5, 5).is_some());
     }
 }

@@ -24,6 +24,17 @@ fn identified_with(recording: &Recording, settings: IdentificationSettings) -> I
     identify(recording, settings, &|_| ()).unwrap()
 }
 
+/// Some instants of a recording.
+fn part(recording: &Recording, kept: &[usize]) -> Recording {
+    let of = |values: &[f64]| kept.iter().map(|i| values[*i]).collect::<Vec<f64>>();
+    Recording {
+        times: of(&recording.times),
+        extension: of(&recording.extension),
+        force: of(&recording.force),
+        ..recording.clone()
+    }
+}
+
 /// All trials are in `gelbench validate spring-identification`.
 #[test]
 fn known_functions_lie_within_their_bands_in_nine_of_ten_trials() {
@@ -200,13 +211,7 @@ fn a_recording_of_two_thirds_of_the_instants_has_the_functions_of_the_whole_one(
         let kept: Vec<usize> = (0..complete.times.len())
             .filter(|_| random.random_range(0..3) > 0)
             .collect();
-        let of = |values: &[f64]| kept.iter().map(|i| values[*i]).collect::<Vec<f64>>();
-        let part = Recording {
-            times: of(&complete.times),
-            extension: of(&complete.extension),
-            force: of(&complete.force),
-            ..complete.clone()
-        };
+        let part = part(&complete, &kept);
         let actual = identified(&part);
         assert!(actual.misfit < 1.2, "{seed}: {}", actual.misfit);
         for x in POSITIONS {

@@ -2,7 +2,7 @@
 
 use super::band::Function;
 use super::basis::{Form, Shape};
-use super::joint::Argument;
+use super::joint::{Argument, Joint, State};
 use crate::estimation::Answer;
 
 /// The settings of an identification.
@@ -77,6 +77,21 @@ pub struct FittedMotion {
     pub acceleration: Vec<f64>,
     /// m ẍ + D ẋ + K x in N.
     pub force: Vec<f64>,
+}
+
+impl FittedMotion {
+    /// The motion of a state.
+    pub(super) fn new(joint: &Joint, state: &State) -> Self {
+        let mut motion = Self::default();
+        for instant in 0..joint.recording.times.len() {
+            let at = joint.instant(instant, state);
+            motion.extension.push(at.extension);
+            motion.rate.push(at.rate);
+            motion.acceleration.push(at.acceleration);
+            motion.force.push(at.force);
+        }
+        motion
+    }
 }
 
 /// The result of an identification.

@@ -7,6 +7,7 @@ use super::smoothing::{SignalSpline, exceeds_resolution};
 use super::suspects::{Suspected, description};
 use super::types::{FittedMotion, Identification, RecordingVerdict};
 use crate::estimation::Answer;
+use crate::units::number;
 
 /// The number of arguments at which the sign of a function is examined.
 const POSITIONS: usize = 41;
@@ -14,11 +15,33 @@ const POSITIONS: usize = 41;
 /// The doubt about a motion with `count` corners.
 fn of_corners(count: usize) -> String {
     format!(
-        "the motion has {count} corners, as where a machine reverses at a constant rate, or values that are far from both neighbours: the fitted \
-         smooth motion cannot follow them, so that intervals and bands are not valid; use sinusoidal motion, identify the parts between corners \
-         separately, or remove wrong rows"
+        "the motion has {count} corners, as where a machine reverses at a constant rate: the fitted smooth motion cannot follow them, so that \
+         intervals and bands are not valid; use sinusoidal motion, or identify the parts between corners separately"
     )
 }
+
+/// The reason of values of a signal at some instants that are far from both neighbours, as a logger's wrong ones are.
+fn of_spikes((signal, instants): (&str, &Vec<usize>), times: &[f64]) -> Option<String> {
+    /// The rows that are named.
+    const MOST: usize = 12;
+    let named = instants.iter().take(MOST);
+    let named = named.map(|i| format!("{} ({} s)", i + 1, number(times[*i])));
+    let named = named.collect::<Vec<_>>().join(", ");
+    let more = match instants.len().saturating_sub(MOST) {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    (!instants.is_empty()).then(|| {
+        format!(
+            "the {signal} lies far from its values before and after in the rows of numbers {named}{more}: remove these rows first, because they hide \
+             other errors or look like them"
+        )
+    })
+}
+
+/// The doubt about a motion that is followed across gaps.
+const BRIDGED: &str = "the recording has gaps with too few rows between them, across which one smooth motion is fitted, so that intervals and bands \
+                       are not valid: remove the rows between neighbouring gaps, or record without gaps";
 
 /// Whether a motion is a steady vibration, which passes every extension at one speed forward and at one backward: among instants of like
 /// extension ẋ scatters by less than this share of its variance.
@@ -92,6 +115,10 @@ pub struct Evidence<'a> {
     pub recording: &'a Recording,
     /// The splines of extension and force.
     pub signals: &'a (SignalSpline, SignalSpline),
+    /// The instants of spikes of extension and force.
+    pub spikes: [Vec<usize>; 2],
+    /// Whether the motion is fitted across gaps.
+    pub is_bridged: bool,
     /// The number of corners of the motion, where it has some.
     pub corners: Option<usize>,
     /// What the recording surely indicates, the surest first.
@@ -101,6 +128,17 @@ pub struct Evidence<'a> {
 impl Evidence<'_> {
     /// The verdict on the recording of some functions.
     pub fn verdict(&self, result: &Identification) -> RecordingVerdict {
+        let spikes = ["extension", "force"].into_iter().zip(&self.spikes);
+        let reasons: Vec<String> = spikes
+            .filter_map(|spikes| of_spikes(spikes, &self.recording.times))
+            .collect();
+        if !reasons.is_empty() {
+            return RecordingVerdict {
+                answer: Answer::NotExplained,
+                reasons,
+                doubts: Vec::new(),
+            };
+        }
         let (reason, doubt) = match self.excess(result) {
             Some(excess) if result.misfit > MOST_MISFIT => (Some(excess), None),
             excess => (None, excess),
@@ -117,7 +155,7 @@ impl Evidence<'_> {
         let doubts = if reasons.is_empty() {
             doubt.into_iter().chain(self.doubts(result)).collect()
         } else {
-            self.corners.map(of_corners).into_iter().collect()
+            self.shape_doubts()
         };
         RecordingVerdict {
             answer: if reasons.is_empty() {
@@ -145,9 +183,16 @@ impl Evidence<'_> {
         })
     }
 
+    /// The doubts about a motion that no smooth spline follows.
+    fn shape_doubts(&self) -> Vec<String> {
+        let corners = self.corners.map(of_corners);
+        let bridged = self.is_bridged.then(|| BRIDGED.to_owned());
+        corners.into_iter().chain(bridged).collect()
+    }
+
     fn doubts(&self, result: &Identification) -> Vec<String> {
         let (extension, force) = self.signals;
-        let mut doubts: Vec<String> = self.corners.map(of_corners).into_iter().collect();
+        let mut doubts = self.shape_doubts();
         if extension.coarse || force.coarse {
             doubts.push(
                 "the motion is sampled too coarsely to distinguish it from its noise".to_owned(),

@@ -236,3 +236,50 @@ fn a_steady_vibration_is_told() {
     assert!(is_steady([6.0, 0.0]));
     assert!(!is_steady([6.0, 4.0]));
 }
+
+/// A gap of a logger takes away what was not recorded, and nothing else.
+#[test]
+fn a_gap_leaves_the_functions_as_they_are() {
+    let sample = Sample {
+        noise: 0.02,
+        ..Sample::default()
+    };
+    let whole = sample.recording();
+    for missing in [300..360, 300..400] {
+        let kept: Vec<usize> = (0..whole.times.len())
+            .filter(|i| !missing.contains(i))
+            .collect();
+        let actual = identified(&part(&whole, &kept));
+        assert!(
+            actual.is_explained() && actual.misfit < 1.2,
+            "{:?}",
+            actual.verdict
+        );
+        for x in POSITIONS {
+            let k = actual.stiffness.at(x).value;
+            assert!((k / Sample::stiffness(x) - 1.0).abs() < 0.1, "{x}: {k}");
+        }
+    }
+    // Five rows between two gaps say nothing of rates.
+    let lonely: Vec<usize> = (0..whole.times.len())
+        .filter(|i| !(300..320).contains(i) && !(325..345).contains(i))
+        .collect();
+    let actual = identified(&part(&whole, &lonely));
+    let mut doubts = actual.verdict.doubts.iter();
+    assert!(doubts.any(|doubt| doubt.contains("between neighbouring gaps")));
+}
+
+/// Wrong rows look like a lag, or like noise.
+#[test]
+fn wrong_rows_of_the_force_are_named_and_nothing_else() {
+    let mut recording = Sample::default().recording();
+    for row in [100, 400, 700] {
+        recording.force[row] += 1.5;
+    }
+    let actual = identified(&recording);
+    let [reason] = &actual.verdict.reasons[..] else {
+        panic!("{:?}", actual.verdict);
+    };
+    let expected = "the force lies far from its values before and after in the rows of numbers 101 (0.33333 s), 401 (1.3333 s), 701 (2.3333 s): remove";
+    assert!(reason.starts_with(expected), "{reason}");
+}
