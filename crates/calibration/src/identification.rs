@@ -47,7 +47,7 @@ pub use joint::Argument;
 pub use law_text::law_text;
 pub use recording::Recording;
 pub use sample::Sample;
-use suspects::examine;
+use suspects::Examination;
 pub use types::{FittedMotion, Identification, IdentificationSettings, RecordingVerdict};
 use verdict::{Evidence, notes};
 
@@ -333,7 +333,14 @@ impl<'a> Fit<'a> {
         let is_followed =
             !signals.0.coarse && !signals.1.coarse && corners.is_none() && !joint.is_bridged;
         let suspects = if is_followed && spikes.iter().all(Vec::is_empty) {
-            examine(joint, &self.state, &identification, fit)
+            let examination = Examination {
+                joint,
+                state: &self.state,
+                fit: &identification,
+                penalised: fit,
+                parts_of_force: signals.1.intervals,
+            };
+            examination.suspects()
         } else {
             Vec::new()
         };

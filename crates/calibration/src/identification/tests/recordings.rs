@@ -283,3 +283,41 @@ fn wrong_rows_of_the_force_are_named_and_nothing_else() {
     let expected = "the force lies far from its values before and after in the rows of numbers 101 (0.33333 s), 401 (1.3333 s), 701 (2.3333 s): remove";
     assert!(reason.starts_with(expected), "{reason}");
 }
+
+/// The first number after some words.
+fn size(text: &str, words: &str) -> f64 {
+    let after = text.split(words).nth(1).unwrap_or_default();
+    let number = after.split(' ').next().unwrap_or_default();
+    number.parse().unwrap_or(f64::NAN)
+}
+
+/// K(·) x does not vanish at rest where either zero is off; which one it is only the machine tells.
+#[test]
+fn a_zero_error_of_either_signal_is_told_as_one_of_both_with_its_whole_size() {
+    let mut recording = Sample::default().recording();
+    recording.extension.iter_mut().for_each(|x| *x += 1.0);
+    let actual = identified(&recording);
+    let asked = asked_for(&actual).unwrap_or_default();
+    assert!(
+        size(&asked, "a zero error of the force of ") < 0.0,
+        "{asked}"
+    );
+    let extension = size(&asked, "a zero error of the extension of ");
+    assert!((extension - 1.0).abs() < 0.25, "{asked}");
+    let remedy = "look up at the machine which zero is off";
+    assert_contains(&actual.verdict.reasons[0], remedy);
+}
+
+/// A force that is two sampling intervals late: the noise of its rates makes it no smaller.
+#[test]
+fn a_lag_has_its_whole_size() {
+    let mut recording = Sample::default().recording();
+    let late = 1e3 * (recording.times[2] - recording.times[0]);
+    recording.force.rotate_right(2);
+    let first = recording.force[2];
+    recording.force[..2].fill(first);
+    let actual = identified(&recording);
+    let asked = asked_for(&actual).unwrap_or_default();
+    let lag = size(&asked, "a force that is recorded ");
+    assert!((lag / late - 1.0).abs() < 0.12, "{asked}");
+}
