@@ -28,7 +28,7 @@ pub const RESOLUTION: f64 = 1e-3;
 /// A spline fitted to one signal alone.
 #[derive(Clone, Debug)]
 pub struct SignalSpline {
-    /// Equal parts of the duration.
+    /// Equal parts of the time without gaps.
     pub intervals: usize,
     /// Standard deviation of the noise, in the signal's unit.
     pub noise: f64,
@@ -59,9 +59,12 @@ struct Piece {
 }
 
 impl PiecewiseSpline {
-    /// Parts as long as `intervals` equal ones of the duration; `None` where too few instants lie between two gaps.
+    /// Parts as long as `intervals` equal ones of the time without gaps; `None` where too few instants lie between two gaps.
     pub fn new(times: &[f64], intervals: usize, degree: usize) -> Option<Self> {
-        let part = (times[times.len() - 1] - times[0]) / intervals as f64;
+        let with_gaps = (times[times.len() - 1] - times[0]) / intervals as f64;
+        let steps = times.windows(2).map(|pair| pair[1] - pair[0]);
+        let recorded: f64 = steps.filter(|step| *step <= BRIDGED * with_gaps).sum();
+        let part = recorded / intervals as f64;
         let mut pieces = Vec::new();
         let (mut instant, mut first) = (0, 0);
         for run in times.chunk_by(|before, after| after - before <= BRIDGED * part) {
@@ -168,8 +171,8 @@ impl BandMatrix {
     }
 }
 
-/// The spline with parts as long as `intervals` equal ones of the duration, and its coefficients nearest to `signal`; `None` where the
-/// instants do not determine it.
+/// The spline with parts as long as `intervals` equal ones of the time without gaps, and its coefficients nearest to `signal`; `None` where
+/// the instants do not determine it.
 pub fn nearest(
     times: &[f64],
     signal: &[f64],
@@ -255,24 +258,26 @@ mod tests {
     /// The noise of a signal is that of its runs, however long the gap between them.
     #[test]
     fn a_gap_changes_neither_the_parts_nor_the_noise() {
-        let times: Vec<f64> = (0..800).map(|i| 0.01 * f64::from(i)).collect();
+        let mut moving: Vec<f64> = (0..800).map(|i| 0.01 * f64::from(i)).collect();
+        moving.retain(|t| !(3.0..3.8).contains(t));
         let mut normal = normal_numbers(3);
-        let rows = times
-            .iter()
-            .map(|t| [*t, (9.0 * t).sin() + 0.05 * normal()]);
-        let rows = rows.filter(|[t, _]| !(3.0..3.8).contains(t));
-        let (times, signal): (Vec<f64>, Vec<f64>) = rows.map(|[t, y]| (t, y)).unzip();
-        let actual = smooth(&times, &signal, 5).unwrap();
-        assert!((actual.noise / 0.05 - 1.0).abs() < 0.08, "{actual:?}");
-        let (spline, coefficients) = nearest(&times, &signal, 60, 5).unwrap();
-        assert_eq!(spline.runs(), [0..300, 300..720]);
-        let sampled = SplineValues::new(&spline, &times, 1);
-        for (i, t) in times.iter().enumerate().skip(10).step_by(40) {
-            let (rate, exact) = (sampled.value(i, &coefficients), 9.0 * (9.0 * t).cos());
-            assert!((rate - exact).abs() < 2.0, "{t}: {rate} {exact}");
+        let signal = moving.iter().map(|t| (9.0 * t).sin() + 0.05 * normal());
+        let signal: Vec<f64> = signal.collect();
+        for pause in [0.0, 500.0] {
+            let later = |t: &f64| if *t > 3.4 { t + pause } else { *t };
+            let times: Vec<f64> = moving.iter().map(later).collect();
+            let actual = smooth(&times, &signal, 5).unwrap();
+            assert!((actual.noise / 0.05 - 1.0).abs() < 0.08, "{actual:?}");
+            let (spline, coefficients) = nearest(&times, &signal, 60, 5).unwrap();
+            assert_eq!(spline.runs(), [0..300, 300..720]);
+            let sampled = SplineValues::new(&spline, &times, 1);
+            for (i, t) in moving.iter().enumerate().skip(10).step_by(40) {
+                let (rate, exact) = (sampled.value(i, &coefficients), 9.0 * (9.0 * t).cos());
+                assert!((rate - exact).abs() < 2.0, "{t}: {rate} {exact}");
+            }
         }
         // Too few instants lie between two gaps for a motion to be known there.
-        let mut lonely = times;
+        let mut lonely = moving;
         lonely.retain(|t| !(3.85..4.5).contains(t));
         assert!(PiecewiseSpline::new(&lonely, 60, 5).is_none());
         assert!(PiecewiseSpline::new(&lonely, 5, 5).is_some());
