@@ -129,7 +129,7 @@ fn a_slender_strip_in_tension_vibrates_as_a_stiff_string() {
         )
     });
     let in_the_middle = 100.0 * (wrong / size).sqrt();
-    let checks = report["checks"].as_array().unwrap();
+    let checks = report["requirements"].as_array().unwrap();
     let name = "mass-spring: displacement since the start over all instants";
     let check = checks.iter().find(|check| check["quantity"] == name);
     let told = check.unwrap()["computed"].as_f64().unwrap();

@@ -257,7 +257,7 @@ fn unmarked(dimension: Dimension, fault: &QuantityFault) -> &'static str {
 /// # Errors
 /// The known keys that stand twice with different values.
 pub(super) fn pairs(table: &Table, known: &[&str]) -> Result<Pairs, Vec<Diagnostic>> {
-    let (mut pairs, mut faults) = (BTreeMap::new(), Vec::new());
+    let (mut pairs, mut faults) = (Pairs::new(), Vec::new());
     let known = |key: &str| known.contains(&&*plain_key(key));
     let mut start = 0;
     for line in table.source.text.split_inclusive('\n') {
