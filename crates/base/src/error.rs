@@ -98,6 +98,14 @@ pub enum SolveFault {
     /// A search for parameters that ended where their sum of squares still falls.
     #[error("the search ended at no minimum of the sum of squares")]
     NoMinimum,
+    /// A search for the strains of the bars of a sheet that ended where its markers were not measured.
+    #[error(
+        "with this law no strains of the bars bring the markers there: {missing:.1e} are missing"
+    )]
+    MarkersMissed {
+        /// The strain that is missing.
+        missing: f64,
+    },
     /// A motion that needs more steps than are allowed.
     #[error(
         "about {needed:.1e} steps of at most {longest:.1e} s are needed, and {allowed:.1e} are allowed"
@@ -174,6 +182,10 @@ impl SolveFault {
             }
             Self::NoMinimum => {
                 "keep parameters near values that are expected (`--bound`), take more starts (`--starts`), or choose a law with fewer parameters"
+            }
+            Self::MarkersMissed { .. } => {
+                "look at the distance of the markers and at which axis is which; keep parameters near values that are expected (`--bound`), or choose \
+                 another law"
             }
             Self::Explodes { .. } => {
                 "look at the supports and loads at that time; take shorter steps or generalised-α, and if generalised-α fails, `spectral_radius = 1`"

@@ -2,12 +2,12 @@
 
 use std::sync::Arc;
 
+use nalgebra::{Matrix2, Vector2};
 use rayon::prelude::*;
 
 use super::sheet::{MountedSheet, SheetLaw, SheetState};
 use crate::error::{Error, SolveFault};
 use crate::material::HyperelasticLaw;
-use crate::material::sheet::Kinematics;
 use crate::problem::sheet_energy::SheetEnergy;
 use crate::solve::vector::{difference, moved};
 use crate::solve::{Assembly, Loading, Newton, NewtonSettings};
@@ -75,20 +75,38 @@ impl MountedSheet {
 struct Body {
     law: Arc<dyn HyperelasticLaw>,
     energy: SheetEnergy,
+    /// Whether the sheet is mounted at rest.
+    is_at_rest: bool,
 }
 
 impl Body {
     fn new(sheet: &MountedSheet, law: &SheetLaw) -> Self {
-        let law = law.mounted();
+        let mounted = law.mounted();
         Self {
-            energy: sheet.energy.with_law(Arc::clone(&law)),
-            law,
+            energy: sheet.energy.with_law(Arc::clone(&mounted)),
+            law: mounted,
+            is_at_rest: law.stretches == [1.0; 2],
         }
     }
+}
 
-    /// Whether the sheet is at rest as it is mounted.
-    fn is_at_rest(&self) -> bool {
-        self.law.stress(&Kinematics::rest()).1.norm() == 0.0
+/// The derivatives of the strains of the markers by those of the bars.
+#[derive(Clone, Copy)]
+struct Markers(Matrix2<f64>);
+
+impl Markers {
+    /// The step of the bars by which the markers move so far; `None` where they do not follow.
+    fn step(self, far: Vector2<f64>) -> Option<Vector2<f64>> {
+        self.0.try_inverse().map(|inverse| inverse * far)
+    }
+
+    /// The nearest derivatives by which the markers move as they did with a step of the bars.
+    ///
+    /// # References
+    /// C. G. Broyden, Math. Comp. 19, 577 (1965)
+    fn updated(self, step: Vector2<f64>, moved: Vector2<f64>) -> Self {
+        let missed = moved - self.0 * step;
+        Self(self.0 + missed * step.transpose() / step.norm_squared())
     }
 }
 
@@ -99,6 +117,8 @@ struct Search<'a> {
     newton: Newton,
     /// The strains of the bars in the state whose tangent was factorised last.
     factorised: Option<[f64; 2]>,
+    /// How the markers follow the bars about the state found last.
+    markers: Option<Markers>,
 }
 
 impl<'a> Search<'a> {
@@ -113,6 +133,7 @@ impl<'a> Search<'a> {
             bodies,
             newton: newton.map_err(|fault| fault_at([0.0; 2], fault))?,
             factorised: None,
+            markers: None,
         })
     }
 
@@ -200,37 +221,64 @@ impl<'a> Search<'a> {
         /// Strains of the markers are reached this closely.
         const CLOSE: f64 = 1e-7;
         const MOST: usize = 20;
-        // How the middle follows the bars: about as they are, and then by secants.
-        let mut bars = near.map_or(strains, |near| {
-            [0, 1].map(|axis| near.bars[axis] + strains[axis] - near.middle[axis])
+        /// Where a step covers less of what it should, the derivatives are taken anew.
+        const SERVES: f64 = 0.5;
+        let target = Vector2::from(strains);
+        let missing = |state: &SheetState| target - Vector2::from(state.middle);
+        let begin = near.map_or(strains, |near| {
+            let bars = Vector2::from(near.bars);
+            let step = self.markers.and_then(|markers| markers.step(missing(near)));
+            (bars + step.unwrap_or_else(|| missing(near))).into()
         });
-        let mut state = self.at_bars(body, bars, near)?;
-        let mut follows = [1.0; 2];
+        let mut state = self.at_bars(body, begin, near)?;
+        let mut share = 1.0_f64;
         for _ in 0..MOST {
-            let missing = [0, 1].map(|axis| strains[axis] - state.middle[axis]);
-            if missing.iter().all(|one| one.abs() < CLOSE) {
+            let far = missing(&state);
+            if far.amax() < CLOSE {
                 return Ok(state);
             }
-            let before = (bars, state.middle);
-            for axis in [0, 1] {
-                bars[axis] += missing[axis] / follows[axis];
-            }
-            state = self.at_bars(body, bars, Some(&state))?;
-            for axis in [0, 1] {
-                let moved = bars[axis] - before.0[axis];
-                if moved.abs() > CLOSE {
-                    let secant = (state.middle[axis] - before.1[axis]) / moved;
-                    follows[axis] = secant.clamp(0.3, 3.0);
-                }
-            }
+            let markers = match self.markers.take() {
+                Some(markers) => markers,
+                None => self.markers_by_differences(body, &state)?,
+            };
+            let step = share * markers.step(far).unwrap_or(far);
+            let bars = Vector2::from(state.bars) + step;
+            let reached = self.at_bars(body, bars.into(), Some(&state));
+            let Some(next) = reached
+                .ok()
+                .filter(|next| missing(next).norm() < far.norm())
+            else {
+                share *= 0.5;
+                continue;
+            };
+            let left = missing(&next).norm() / far.norm();
+            self.markers =
+                (left < 1.0 - SERVES * share).then(|| markers.updated(step, far - missing(&next)));
+            (state, share) = (next, (2.0 * share).min(1.0));
         }
-        Err(SolveFault::Stalled {
-            iterations: MOST,
-            residual: (strains[0] - state.middle[0])
-                .abs()
-                .max((strains[1] - state.middle[1]).abs()),
-            tolerance: CLOSE,
-        })
+        let missing = missing(&state).amax();
+        if missing < CLOSE {
+            return Ok(state);
+        }
+        Err(SolveFault::MarkersMissed { missing })
+    }
+
+    /// How the markers follow the bars about a state.
+    fn markers_by_differences(
+        &mut self,
+        body: &Body,
+        state: &SheetState,
+    ) -> Result<Markers, SolveFault> {
+        /// So close that the tangent of the state serves.
+        const STEP: f64 = 0.5 * NEARBY;
+        let mut columns = [Vector2::<f64>::zeros(); 2];
+        for axis in [0, 1] {
+            let mut bars = state.bars;
+            bars[axis] += STEP;
+            let moved = self.at_bars(body, bars, Some(state))?;
+            columns[axis] = (Vector2::from(moved.middle) - Vector2::from(state.middle)) / STEP;
+        }
+        Ok(Markers(Matrix2::from_columns(&columns)))
     }
 
     /// The state at some strains of the bars, from a state nearby, in shorter steps where it is not reached in one.
@@ -242,7 +290,7 @@ impl<'a> Search<'a> {
     ) -> Result<SheetState, SolveFault> {
         const SHORTEST: f64 = 1.0 / 16.0;
         let at_rest = vec![0.0; 2 * self.sheet.mesh.nodes.len()];
-        if bars == [0.0; 2] && body.is_at_rest() {
+        if bars == [0.0; 2] && body.is_at_rest {
             return Ok(SheetState {
                 stresses: [0.0; 2],
                 middle: [0.0; 2],
@@ -329,8 +377,12 @@ impl<'a> Search<'a> {
 }
 
 fn fault_at([first, second]: [f64; 2], fault: SolveFault) -> Error {
+    let model = match fault {
+        SolveFault::MarkersMissed { .. } => "search for the strains of the bars",
+        _ => "finite elements of the mounted sheet",
+    };
     Error::Solve {
-        model: "finite elements of the mounted sheet".into(),
+        model: model.into(),
         step: format!("strains of {first:.4} and {second:.4}"),
         fault,
     }

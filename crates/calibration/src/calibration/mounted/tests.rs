@@ -12,6 +12,17 @@ use crate::statistics::normal_numbers;
 const RAKES: &str = "# mounting: rakes\n# tines: 5\n# tine spacing: 1.3 mm\n# tine inset: 0.8 mm\n# tine diameter: 0.3 mm\n\
                      # length: 8.4 mm\n# width: 8.4 mm\n# thickness: 1 mm\n";
 
+const CRUCIFORM: &str = "# mounting: cruciform\n# length: 30 mm\n# width: 30 mm\n# arm width: 10 mm\n# fillet: 3 mm\n# thickness: 1 mm\n";
+
+/// The head of a record, and the mounting that it states.
+fn mounting_of(head: &str) -> (String, Mounting) {
+    let names = "strain_1,strain_2,nominal_stress_1 [MPa],nominal_stress_2 [MPa]\n";
+    let head =
+        format!("# test: biaxial\n# strain measure: nominal\n# strain unit: -\n{head}{names}");
+    let test = parsed(&format!("{head}0.1,0.1,1,1\n"));
+    (head, test.mounted.mounting.unwrap())
+}
+
 /// The record of a law on a mounting, pulled in some ratios up to a strain of the bars, with noise of the forces.
 fn record(
     head: &str,
@@ -35,11 +46,7 @@ fn recorded(
         (0..=ROWS).map(|row| ratio.map(|share| most * share * row as f64 / ROWS as f64))
     });
     let strains: Vec<[f64; 2]> = ratios.collect();
-    let names = "strain_1,strain_2,nominal_stress_1 [MPa],nominal_stress_2 [MPa]\n";
-    let head =
-        format!("# test: biaxial\n# strain measure: nominal\n# strain unit: -\n{head}{names}");
-    let empty = parsed(&format!("{head}0.1,0.1,1,1\n"));
-    let mounting = empty.mounted.mounting.unwrap();
+    let (head, mounting) = mounting_of(head);
     let sheet = MountedSheet::new(mounting, 1);
     let law = SheetLaw {
         law: Arc::clone(law),
@@ -123,10 +130,43 @@ fn mountings_that_slide_and_markers_give_the_same_law() {
 
 #[test]
 fn a_cruciform_gives_the_law_of_its_middle() {
-    let head = "# mounting: cruciform\n# length: 30 mm\n# width: 30 mm\n# arm width: 10 mm\n# fillet: 3 mm\n# thickness: 1 mm\n";
     let law: Arc<dyn HyperelasticLaw> = Arc::new(FungDemiray { mu: 0.02, b: 4.0 });
-    let tests = [record(head, &law, [1.0; 2], (0.2, 0.003))];
+    let tests = [record(CRUCIFORM, &law, [1.0; 2], (0.2, 0.003))];
     accurate_fit("fung-demiray", &[0.02, 4.0], &tests, 1.0);
+}
+
+/// With one pair of bars the markers along both axes move, along the other one by up to as much.
+#[test]
+fn the_bars_of_an_anisotropic_sheet_are_found_by_its_markers() {
+    let (_, mounting) = mounting_of(CRUCIFORM);
+    let laws = [SheetLaw {
+        law: law("holzapfel-gasser-ogden", &[0.008, 0.02, 2.0, 0.1, 0.6]).into(),
+        stretches: [1.0; 2],
+    }];
+    let [by_bars, by_markers] = [None, Some(3.0)].map(|markers| {
+        let mounting = Mounting {
+            markers,
+            ..mounting
+        };
+        MountedSheet::new(mounting, 0)
+    });
+    let ratios = [[1.0, 1.0], [1.0, 0.4], [0.4, 1.0]];
+    let bars: Vec<[f64; 2]> = ratios
+        .iter()
+        .flat_map(|ratio| [0.0_f64, 0.1, 0.2].map(|most| ratio.map(|share| most * share)))
+        .collect();
+    let states = by_bars.states(&laws, &bars, &[]).unwrap().concat();
+    let strains: Vec<[f64; 2]> = states
+        .iter()
+        .map(|state| by_markers.middle(&state.field))
+        .collect();
+    let found = by_markers.states(&laws, &strains, &[]).unwrap().concat();
+    for (state, bars) in found.iter().zip(&bars) {
+        for axis in [0, 1] {
+            let off = state.bars[axis] - bars[axis];
+            assert!(off.abs() < 1e-5, "{bars:?} {:?}", state.bars);
+        }
+    }
 }
 
 /// As mounted the sheet is stretched by 4 and 2 %: taken as at rest, its law is another one; estimated or stated it is the right one.
