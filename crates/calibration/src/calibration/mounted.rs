@@ -8,12 +8,19 @@
 //! sheet is solved with the present law p at some strains ε of its bars; there its middle has the strains m(ε; p), and its forces f are
 //!
 //! ```text
-//! fₖ/Aₖ = Pₖ(m; p) + cₖ(ε; p) (|Pₖ(m; p)| + P₀),   P₀ a fiftieth of the largest stress
+//! fₖ/Aₖ = Pₖ(m; p) + dₖ(ε; p) (Pₖ(m; p)² + P₁²)^½,   P₁ a fifth of the largest stress
 //! ```
 //!
-//! c is the effect of the tines. Interpolated to all rows (cubic radial functions), m and c turn each measured force into the stress that
-//! the middle carried at its stretches, to which the law is fitted as to any test. What c and m change with the law enters by its
-//! derivatives, taken from the finite elements of laws nearby: the fit is that of the finite elements once it does not change, and so are
+//! d is the effect of the tines, or of the arms: near rest it is proportional to the strains, and far from it the share of the stress. m and
+//! d are interpolated to all rows (cubic radial functions) from strains of which the first is none, where both vanish if the sheet is mounted
+//! at rest. A measured force x differs from fₖ, as the law is not yet the right one; what the middle carried of it is
+//!
+//! ```text
+//! Pₖ + (x/Aₖ − fₖ/Aₖ) (|Pₖ| + P₀) / (|fₖ/Aₖ| + P₀),   P₀ a fiftieth of the largest stress
+//! ```
+//!
+//! which is in proportion to x where stresses are large. To this the law is fitted as to any test. What d and m change with the law enters by
+//! its derivatives, taken from the finite elements of laws nearby: the fit is that of the finite elements once it does not change, and so are
 //! its intervals.
 //!
 //! # References

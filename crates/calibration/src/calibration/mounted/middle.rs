@@ -4,29 +4,46 @@ use super::interpolation::Interpolation;
 use super::sheet::{SheetLaw, SheetState};
 use crate::calibration::data::{Observation, TestData};
 
-/// P₀ as a share of the largest stress.
-const SMALL_STRESS: f64 = 0.02;
+/// The largest measured stress in MPa.
+#[derive(Clone, Copy)]
+struct Largest(f64);
+
+impl Largest {
+    /// P₀ as a share of it.
+    const SMALL: f64 = 0.02;
+    /// P₁ as a share of it.
+    const MODERATE: f64 = 0.2;
+
+    /// (P² + P₁²)^½.
+    fn beside(self, stress: f64) -> f64 {
+        stress.hypot(Self::MODERATE * self.0)
+    }
+
+    /// How many times larger a force over its cross-section is than the stress of the middle: (|f/A| + P₀) / (|P| + P₀).
+    fn ratio(self, force: f64, stress: f64) -> f64 {
+        let small = Self::SMALL * self.0;
+        (force.abs() + small) / (stress.abs() + small)
+    }
+}
 
 /// The relation of forces and middle by some values.
 pub struct Middle {
     law: SheetLaw,
-    /// P₀ in MPa.
-    small: f64,
+    largest: Largest,
     /// What the load cells read without load, in MPa.
     read: [f64; 2],
-    /// Over the strains of the bars, or of the markers: coefficients of m − ε, and of c, along both axes.
+    /// Over the strains of the bars, or of the markers: coefficients of m − ε, and of d, along both axes.
     of_bars: Interpolation,
     strains: [Vec<f64>; 2],
-    factors: [Vec<f64>; 2],
-    /// Over the strains of the middle: the coefficients of the derivatives by each value along both axes, over |P| + P₀; `None` by a zero
-    /// of force.
+    effects: [Vec<f64>; 2],
+    /// Over the strains of the middle: the coefficients of the derivatives by each value along both axes, over (P² + P₁²)^½; `None` by a
+    /// zero of force.
     of_middle: Interpolation,
     slopes: Vec<Option<[Vec<f64>; 2]>>,
-    /// The same of c.
-    factors_of_middle: [Vec<f64>; 2],
+    /// The same of d.
+    effects_of_middle: [Vec<f64>; 2],
     /// The derivatives of the forces over the cross-sections at the knots by each value.
     forces: Vec<Vec<[f64; 2]>>,
-    largest: f64,
 }
 
 /// The finite elements at the knots: of the law, and of those whose values are moved by steps.
@@ -34,7 +51,7 @@ struct Differences<'a> {
     laws: &'a [SheetLaw],
     steps: &'a [Option<f64>],
     solved: &'a [Vec<SheetState>],
-    small: f64,
+    largest: Largest,
 }
 
 impl Differences<'_> {
@@ -43,10 +60,10 @@ impl Differences<'_> {
         self.laws[0].stresses(self.solved[knot][0].middle)[axis]
     }
 
-    /// c.
-    fn factor(&self, knot: usize, axis: usize) -> f64 {
+    /// d.
+    fn effect(&self, knot: usize, axis: usize) -> f64 {
         let stress = self.homogeneous(knot, axis);
-        (self.solved[knot][0].stresses[axis] - stress) / (stress.abs() + self.small)
+        (self.solved[knot][0].stresses[axis] - stress) / self.largest.beside(stress)
     }
 
     /// The derivative of the force over the cross-section by a value; zero by a zero of force.
@@ -56,13 +73,15 @@ impl Differences<'_> {
         self.steps[number].map_or(0.0, |step| change / step)
     }
 
-    /// The derivative of what the middle carries of a force, less that of the law there, over |P| + P₀.
+    /// The derivative of what the middle carries of a force, less that of the law there, over (P² + P₁²)^½.
     fn slope(&self, knot: usize, axis: usize, (number, step): (usize, f64)) -> f64 {
         let stress = self.homogeneous(knot, axis);
         let moved = self.laws[number + 1].stresses(self.solved[knot][0].middle)[axis];
-        let over = 1.0 + self.factor(knot, axis) * stress.signum();
+        let ratio = self
+            .largest
+            .ratio(self.solved[knot][0].stresses[axis], stress);
         let by_law = (moved - stress) / step;
-        (self.force(knot, axis, number) / over - by_law) / (stress.abs() + self.small)
+        (self.force(knot, axis, number) / ratio - by_law) / self.largest.beside(stress)
     }
 }
 
@@ -76,12 +95,12 @@ impl Middle {
         solved: &[Vec<SheetState>],
         (read, largest): ([f64; 2], f64),
     ) -> Self {
-        let small = SMALL_STRESS * largest;
+        let largest = Largest(largest);
         let differences = Differences {
             laws,
             steps,
             solved,
-            small,
+            largest,
         };
         let all = 0..solved.len();
         let middles = solved.iter().map(|states| states[0].middle);
@@ -103,54 +122,58 @@ impl Middle {
         });
         let knots = of_bars.knots();
         Self {
-            small,
+            largest,
             read,
             strains: [0, 1].map(|axis| {
                 let moved = |knot: usize| solved[knot][0].middle[axis] - knots[knot][axis];
                 coefficients(of_bars, &moved)
             }),
-            factors: [0, 1]
-                .map(|axis| coefficients(of_bars, &|knot| differences.factor(knot, axis))),
-            factors_of_middle: [0, 1]
-                .map(|axis| coefficients(&of_middle, &|knot| differences.factor(knot, axis))),
+            effects: [0, 1]
+                .map(|axis| coefficients(of_bars, &|knot| differences.effect(knot, axis))),
+            effects_of_middle: [0, 1]
+                .map(|axis| coefficients(&of_middle, &|knot| differences.effect(knot, axis))),
             slopes: slopes.collect(),
             forces: forces.collect(),
             law: laws[0].clone(),
             of_bars: of_bars.clone(),
             of_middle,
-            largest,
         }
     }
 
     /// The same with the states of its law by other finite elements.
     #[must_use]
     pub fn with_states(&self, law: &[SheetLaw], solved: &[Vec<SheetState>]) -> Self {
-        let middle = Self::new(&self.of_bars, law, &[], solved, (self.read, self.largest));
+        let middle = Self::new(&self.of_bars, law, &[], solved, (self.read, self.largest.0));
         Self {
             of_middle: self.of_middle.clone(),
             slopes: self.slopes.clone(),
-            factors_of_middle: self.factors_of_middle.clone(),
+            effects_of_middle: self.effects_of_middle.clone(),
             forces: self.forces.clone(),
             ..middle
         }
     }
 
-    /// The strains of the middle, and c, at an observation.
-    fn at(&self, one: &Observation) -> ([f64; 2], f64) {
+    /// The strains and the stress of the middle, and the force over its cross-section, at an observation.
+    fn at(&self, one: &Observation) -> ([f64; 2], f64, f64) {
         let basis = self.of_bars.basis(one.strains);
         let strains = [0, 1].map(|axis| one.strains[axis] + basis.value(&self.strains[axis]));
-        (strains, basis.value(&self.factors[one.axis]))
+        let stress = self.law.stresses(strains)[one.axis];
+        let effect = basis.value(&self.effects[one.axis]);
+        (
+            strains,
+            stress,
+            stress + effect * self.largest.beside(stress),
+        )
     }
 
     /// An observation as it would be of the homogeneous middle.
     pub fn of(&self, one: &Observation) -> Observation {
-        let (strains, factor) = self.at(one);
+        let (strains, stress, force) = self.at(one);
         let read = self.read[one.axis];
-        // Of x = P + c (|P| + P₀).
-        let over = one.stress - read - factor * self.small;
+        let more = (one.stress - read - force) / self.largest.ratio(force, stress);
         Observation {
             strains,
-            stress: over / (1.0 + factor * over.signum()) + read,
+            stress: stress + more + read,
             ..*one
         }
     }
@@ -161,13 +184,14 @@ impl Middle {
         let axis = one.axis;
         let basis = self.of_middle.basis(one.strains);
         let stress = self.law.stresses(one.strains)[axis];
-        let size = (stress.abs() + self.small) / self.law.stretches[axis];
+        let beside = self.largest.beside(stress);
+        let size = beside / self.law.stretches[axis];
         let slope = |slopes: &Option<[Vec<f64>; 2]>| {
             let slopes = slopes.as_ref();
             slopes.map_or(0.0, |slopes| size * basis.value(&slopes[axis]))
         };
-        let factor = basis.value(&self.factors_of_middle[axis]);
-        let measured = 1.0 + factor * stress.signum();
+        let force = stress + basis.value(&self.effects_of_middle[axis]) * beside;
+        let measured = self.largest.ratio(force, stress);
         (self.slopes.iter().map(slope).collect(), measured)
     }
 
@@ -180,9 +204,8 @@ impl Middle {
 
     /// What would be measured at the strains of an observation, in MPa.
     pub fn modelled(&self, one: &Observation) -> f64 {
-        let (strains, factor) = self.at(one);
-        let stress = self.law.stresses(strains)[one.axis];
-        stress + factor * (stress.abs() + self.small) + self.read[one.axis]
+        let (_, _, force) = self.at(one);
+        force + self.read[one.axis]
     }
 
     /// By how much forces change between some values, to first order, as a share of the largest.
@@ -195,6 +218,6 @@ impl Middle {
             };
             along(0).max(along(1))
         };
-        self.forces.iter().map(at_knot).fold(0.0, f64::max) / self.largest
+        self.forces.iter().map(at_knot).fold(0.0, f64::max) / self.largest.0
     }
 }

@@ -5,8 +5,9 @@ use std::sync::Arc;
 
 use super::sheet::{MountedSheet, SheetLaw, SheetState};
 use super::*;
+use crate::calibration::data::Observation;
 use crate::calibration::tests::helpers::{fitted, law, parsed};
-use crate::material::{FungDemiray, HyperelasticLaw};
+use crate::material::{FungDemiray, HyperelasticLaw, NeoHooke};
 use crate::statistics::normal_numbers;
 
 const RAKES: &str = "# mounting: rakes\n# tines: 5\n# tine spacing: 1.3 mm\n# tine inset: 0.8 mm\n# tine diameter: 0.3 mm\n\
@@ -133,6 +134,34 @@ fn a_cruciform_gives_the_law_of_its_middle() {
     let law: Arc<dyn HyperelasticLaw> = Arc::new(FungDemiray { mu: 0.02, b: 4.0 });
     let tests = [record(CRUCIFORM, &law, [1.0; 2], (0.2, 0.003))];
     accurate_fit("fung-demiray", &[0.02, 4.0], &tests, 1.0);
+}
+
+/// All forces of a law with one modulus are in proportion to it, those next to rest too, and at rest there is none.
+#[test]
+fn the_effect_of_a_mounting_vanishes_with_the_strain() {
+    let law: Arc<dyn HyperelasticLaw> = Arc::new(NeoHooke { c10: 0.05 });
+    let tests = [record(CRUCIFORM, &law, [1.0; 2], (0.2, 0.0))];
+    let mut sheet = Solved::new(&tests, tests[0].mounted.mounting.unwrap(), NEAR);
+    let middle = sheet.neo_hookean(&tests).unwrap();
+    let rows = &tests[0].observations;
+    let largest = rows
+        .iter()
+        .max_by(|a, b| a.stress.total_cmp(&b.stress))
+        .unwrap();
+    let factor = largest.stress / middle.modelled(largest);
+    for one in rows {
+        let off = (one.stress - factor * middle.modelled(one)) / largest.stress;
+        assert!(off.abs() < 3e-3, "{one:?} {off}");
+    }
+    for axis in [0, 1] {
+        let rest = Observation {
+            strains: [0.0; 2],
+            axis,
+            stress: 0.0,
+        };
+        let stress = middle.of(&rest).stress;
+        assert!(stress.abs() < 1e-9 * largest.stress, "{stress}");
+    }
 }
 
 /// With one pair of bars the markers along both axes move, along the other one by up to as much.
