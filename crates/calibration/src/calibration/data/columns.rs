@@ -160,8 +160,8 @@ fn sized_axis(head: &Head, role: &Role) -> Option<usize> {
     role.numbered.filter(|axis| *axis == 0 || !is_strip)
 }
 
-/// The size of the specimen along an axis in mm less its displacement, where columns state both: in the first row that has them.
-fn size_at_rest(head: &Head, roles: &[Role], axis: usize) -> Option<f64> {
+/// The columns of the specimen's size and displacement along an axis, with their factors to mm.
+pub fn sized(head: &Head, roles: &[Role], axis: usize) -> Option<(Scaled, Option<Scaled>)> {
     let column = |kind: Kind, measure: Option<&str>| {
         let mut columns = of_kind(roles, kind);
         let (column, _) =
@@ -170,10 +170,13 @@ fn size_at_rest(head: &Head, roles: &[Role], axis: usize) -> Option<f64> {
         let factor = units::factor(unit, Dimension::Length).ok()?;
         Some((column, factor))
     };
-    let (size, displacement) = (
-        column(Kind::Size, None)?,
-        column(Kind::Strain, Some(DISPLACEMENT)),
-    );
+    let size = column(Kind::Size, None)?;
+    Some((size, column(Kind::Strain, Some(DISPLACEMENT))))
+}
+
+/// The size of the specimen along an axis in mm less its displacement, where columns state both: in the first row that has them.
+fn size_at_rest(head: &Head, roles: &[Role], axis: usize) -> Option<f64> {
+    let (size, displacement) = sized(head, roles, axis)?;
     let rows = head.table.rows.iter().map(|(row, _)| {
         let value = |(column, factor): (usize, f64)| factor * row[column];
         value(size) - displacement.map_or(0.0, value)

@@ -1,22 +1,24 @@
 //! The meaning of a table's columns, and the rows read accordingly.
 
+use std::ops::Range;
+
 use super::choice::Choice;
 use super::columns::{Scaled, StressColumn, machine, strain_ratio, strains, stresses, time};
 use super::cycles::{SPECIMEN_NAME, preconditioned, reversals};
 use super::mounting::Mounted;
 use super::mounting_statements::refuse_cauchy;
-use super::plausible::{check_signs, implausible, stress_at_rest};
-use super::record::{Machine, Part};
+use super::plausible::{check_signs, check_sizes, implausible, stress_at_rest};
+use super::record::{Curve, Machine, Part};
 use super::roles::{Kind, Role, check_columns, of_kind};
 use super::rounding::WrittenColumn;
-use super::row_choice::rows_in_range;
+use super::row_choice::{protocols, rows_in_range};
 use super::strain_column::{StrainColumn, flip};
 use super::table_reading::TableReading;
 use super::test_data::{Loaded, Observation, Test, TestData, Times};
 use crate::document::{Faulty, Head, Table};
 use crate::error::{Diagnostic, Error};
 use crate::material::parameters::StressMeasure;
-use crate::statistics::farthest;
+use crate::statistics::{extremes, farthest};
 use crate::units::Dimension;
 
 /// The meaning of the columns.
@@ -151,9 +153,10 @@ impl Layout {
     /// Reads the rows.
     pub fn read(&self, head: &Head) -> Faulty<TestData> {
         let table = head.table;
-        let part = self.part(head)?;
+        check_sizes(head, &self.roles)?;
+        let part = Part::of(head, self.machine, || self.curves(table))?;
         let strain = |row: usize| self.strains_of(&table.rows[row].0, &part)[0];
-        let rows = rows_in_range(head, part.rows.clone(), strain)?;
+        let rows = rows_in_range(head, &part.rows, strain)?;
         let ends = [rows[0], rows[rows.len() - 1]];
         let (mut kept, mut left_out) = (Vec::new(), Vec::new());
         let mut along = Vec::new();
@@ -231,15 +234,48 @@ impl Layout {
         })
     }
 
-    /// The part of the table that is fitted.
-    fn part(&self, head: &Head) -> Faulty<Part> {
-        let rows = &head.table.rows;
-        let plain = Part::all_rows(rows.len());
-        let strains = rows.iter().map(|(row, _)| self.strains_of(row, &plain)[0]);
-        let first = self.stresses[0];
-        let stresses = rows.iter().map(|(row, _)| row[first.column] * first.factor);
-        let [strains, stresses] = [strains.collect::<Vec<_>>(), stresses.collect()];
-        Part::of(head, self.machine, &strains, &stresses)
+    /// The curve of each protocol of a biaxial test, and the only one of any other, or of a machine.
+    fn curves(&self, table: &Table) -> Vec<Curve> {
+        let protocols = match self.test {
+            Test::Biaxial if self.machine.is_none() => protocols(table),
+            _ => vec![(String::new(), 0..table.rows.len())],
+        };
+        let are_several = protocols.len() > 1;
+        let curve = |(name, rows): (String, Range<usize>)| {
+            let title = if are_several {
+                format!("protocol `{name}`: ")
+            } else {
+                String::new()
+            };
+            self.curve(table, title, rows)
+        };
+        protocols.into_iter().map(curve).collect()
+    }
+
+    /// The curve of some rows along the first axis, or along a measured second one that is stretched more than twice as far.
+    fn curve(&self, table: &Table, title: String, rows: Range<usize>) -> Curve {
+        let plain = Part::all_rows(0);
+        let of_rows = || table.rows[rows.clone()].iter().map(|(row, _)| row);
+        let strains = [0, 1].map(|axis| {
+            let strain = |row: &Vec<f64>| self.strains_of(row, &plain)[axis];
+            of_rows().map(strain).collect::<Vec<f64>>()
+        });
+        let [first, second] = strains.each_ref().map(|along| {
+            let [low, high] = extremes(along.iter().copied());
+            high - low
+        });
+        let axis = usize::from(self.strains[1].is_some() && second > 2.0 * first);
+        let along = self.stresses.iter().find(|stress| stress.axis == axis);
+        let stress = along.unwrap_or(&self.stresses[0]);
+        let [first, second] = strains;
+        Curve {
+            title,
+            stresses: of_rows()
+                .map(|row| row[stress.column] * stress.factor)
+                .collect(),
+            strains: if axis == 0 { first } else { second },
+            rows,
+        }
     }
 
     /// The time of every observation.

@@ -1,10 +1,14 @@
 //! Test data that are impossible or implausible.
 
+use super::columns::{Scaled, sized};
+use super::roles::Role;
+use super::rounding::WrittenColumn;
 use super::strain_column::{FLIP, StrainColumn};
 use super::test_data::{Observation, Test};
 use crate::document::{Faulty, Head};
 use crate::error::Diagnostic;
 use crate::statistics::{farthest, median};
+use crate::units::decimals;
 
 /// Positive strains below this share of the largest count as rest in a test of compression.
 const SCATTER: f64 = 1e-3;
@@ -57,6 +61,44 @@ pub fn check_signs(
         let hint =
             "tension is positive in both columns, compression negative: reverse the sign of one";
         return Err(head.fault(0..0, message, hint));
+    }
+    Ok(())
+}
+
+/// Refuses displacements that contradict the sizes along their axis: a size less its displacement is the length at rest, in every row.
+pub fn check_sizes(head: &Head, roles: &[Role]) -> Faulty<()> {
+    /// Besides the digits of both columns, differences below this share of the largest displacement are rounding.
+    const ROUNDING: f64 = 5e-3;
+    let table = head.table;
+    let all: Vec<usize> = (0..table.rows.len()).collect();
+    let value = |row: usize, (column, factor): Scaled| factor * table.rows[row].0[column];
+    let step =
+        |(column, factor): Scaled| factor * WrittenColumn::of(table, column, &all).largest_step();
+    for axis in [0, 1] {
+        let Some((size, Some(displacement))) = sized(head, roles, axis) else {
+            continue;
+        };
+        let at_rest = |row: usize| value(row, size) - value(row, displacement);
+        let known = all.iter().copied().filter(|row| at_rest(*row).is_finite());
+        let known: Vec<usize> = known.collect();
+        let Some(first) = known.first().map(|row| at_rest(*row)) else {
+            continue;
+        };
+        let far = farthest(known.iter().map(|row| value(*row, displacement))).abs();
+        let rounding = step(size) + step(displacement) + ROUNDING * far;
+        let contradicts = |row: &&usize| (at_rest(**row) - first).abs() > rounding;
+        if let Some(row) = known.iter().find(contradicts) {
+            let [size, displacement] =
+                [size, displacement].map(|(column, _)| table.columns[column].head());
+            let message = format!(
+                "`{size}` less `{displacement}` is {} mm here and {} mm in the first row: it has to be the length at rest in every row",
+                decimals(at_rest(*row), 6),
+                decimals(first, 6)
+            );
+            let hint = "correct the unit in the head of one of them, or exchange heads that stand above the other axis; where --length and \
+                        --width are stated, sizes are not read";
+            return Err(head.fault(table.rows[*row].1.clone(), message, hint));
+        }
     }
     Ok(())
 }

@@ -26,8 +26,8 @@ pub struct Machine {
 /// The part of a record that is fitted.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Part {
-    /// The rows.
-    pub rows: Range<usize>,
+    /// The rows, in their order.
+    pub rows: Vec<usize>,
     /// The sign of strains and stresses.
     pub signs: [f64; 2],
     /// The strain of the record at which the specimen begins to be stretched.
@@ -40,7 +40,20 @@ pub struct Part {
     pub remarks: Vec<String>,
 }
 
+/// The curve of a protocol, or of a record without protocols.
+pub struct Curve {
+    /// What messages about it begin with; empty where it is the only one.
+    pub title: String,
+    /// Its rows.
+    pub rows: Range<usize>,
+    /// Their strains along the axis that shows the cycles.
+    pub strains: Vec<f64>,
+    /// Their stresses in MPa.
+    pub stresses: Vec<f64>,
+}
+
 /// Where the zero of displacement is.
+#[derive(Clone, Copy)]
 enum Zero {
     Automatic,
     AsWritten,
@@ -52,7 +65,7 @@ impl Part {
     /// All rows as they are.
     pub fn all_rows(rows: usize) -> Self {
         Self {
-            rows: 0..rows,
+            rows: (0..rows).collect(),
             signs: [1.0; 2],
             ..Self::default()
         }
@@ -68,57 +81,65 @@ impl Part {
         self.signs[1] * (y - self.offset)
     }
 
-    /// The chosen part of a record with these strains and stresses.
+    /// The chosen part of a record with these curves: a cycle is chosen in each of them.
     pub fn of(
         head: &Head,
         machine: Option<Machine>,
-        strains: &[f64],
-        stresses: &[f64],
+        curves: impl FnOnce() -> Vec<Curve>,
     ) -> Faulty<Self> {
         let stated = Cycle::stated(head)?;
         let zero = Zero::stated(head, machine)?;
-        let mut part = Self::all_rows(strains.len());
-        let machine = match (machine, stated) {
-            (None, None | Some(Cycle::All)) => return Ok(part),
-            (machine, _) => machine,
-        };
-        let branches = Branches::of_part(strains, stresses);
-        part.choose(head, &branches, stated.unwrap_or(Cycle::Last), machine)?;
-        // Unloading alone shows neither the zero nor the sign.
-        if let Some(machine) = machine.filter(|_| !branches.only_unloads) {
-            let loading = match (&branches.loading[..], part.rows.len() < strains.len()) {
-                ([first, ..], false) if !branches.is_one_pull => first.clone(),
-                _ => part.rows.clone(),
-            };
-            machine.turn_signs(&mut part, &loading, [strains, stresses]);
-            part.begin(head, machine, zero, loading, [strains, stresses])?;
+        let mut part = Self::all_rows(head.table.rows.len());
+        if machine.is_none() && matches!(stated, None | Some(Cycle::All)) {
+            return Ok(part);
+        }
+        let curves = curves();
+        part.rows.clear();
+        for curve in &curves {
+            let branches = Branches::of_part(&curve.strains, &curve.stresses);
+            let cycle = stated.unwrap_or(Cycle::Last);
+            part.choose((head, curve), &branches, cycle, machine)?;
+            // Unloading alone shows neither the zero nor the sign.
+            if let Some(machine) = machine.filter(|_| !branches.only_unloads) {
+                let loading = match (&branches.loading[..], part.rows.len() < curve.rows.len()) {
+                    ([first, ..], false) if !branches.is_one_pull => first.clone(),
+                    _ => part.rows[0]..part.rows[part.rows.len() - 1] + 1,
+                };
+                let values = [&curve.strains[..], &curve.stresses[..]];
+                machine.turn_signs(&mut part, &loading, values);
+                part.begin(head, machine, zero, loading, values)?;
+            }
         }
         Ok(part)
     }
 
-    /// Chooses the rows of a cycle.
+    /// Adds the rows of a curve's cycle.
     fn choose(
         &mut self,
-        head: &Head,
+        (head, curve): (&Head, &Curve),
         branches: &Branches,
         cycle: Cycle,
         machine: Option<Machine>,
     ) -> Faulty<()> {
-        let count = branches.loading.len();
+        let (count, title) = (branches.loading.len(), &curve.title);
         if branches.only_unloads && cycle != Cycle::All {
-            let message = "these rows have no loading branch: the specimen is only unloaded";
+            let message =
+                format!("{title}these rows have no loading branch: the specimen is only unloaded");
             let hint = "take rows that begin before a loading branch; `--cycle all` fits the unloading as it is in the file";
             return Err(head.fault_of(ROWS, message, hint));
         }
         if count == 0 {
+            self.rows.extend(curve.rows.clone());
             return Ok(());
         }
         let Some(rows) = branches.rows(cycle) else {
-            let message = format!("there is no such cycle: {}", cycles(count));
+            let message = format!("{title}there is no such cycle: {}", cycles(count));
             let hint = "first, last, all, or a number up to that";
             return Err(head.fault_of(CYCLE, message, hint));
         };
-        self.rows = rows;
+        let begin = curve.rows.start;
+        let rows = begin + rows.start..begin + rows.end;
+        self.rows.extend(rows.clone());
         if branches.is_one_pull {
             return Ok(());
         }
@@ -129,7 +150,11 @@ impl Part {
         };
         let ends: Vec<_> = ends.map(end).collect();
         let more = if count > 5 { ", …" } else { "" };
-        let counted = format!("{} found (to {}{more})", cycles(count), ends.join(", "));
+        let counted = format!(
+            "{title}{} found (to {}{more})",
+            cycles(count),
+            ends.join(", ")
+        );
         let line = |row: usize| {
             let position = &head.table.rows[row.min(head.table.rows.len() - 1)].1;
             head.table.source.line(position.start)
@@ -144,8 +169,8 @@ impl Part {
                     Cycle::Number(number) => format!("cycle {number}"),
                     _ => "last".to_owned(),
                 },
-                line(self.rows.start),
-                line(self.rows.end - 1)
+                line(rows.start),
+                line(rows.end - 1)
             ),
         };
         let others = "`--cycle first`, `last`, `all` or a number takes another part";
@@ -186,8 +211,8 @@ impl Part {
             .count();
         // By rounding, a zero at the last row may lie behind it.
         let before = before.min(x.len() - 1);
-        if self.zero != 0.0 && self.rows.start <= loading.start {
-            self.rows.start = loading.start + before;
+        if self.zero != 0.0 && self.rows[0] <= loading.start {
+            self.rows.retain(|row| *row >= loading.start + before);
         }
         Ok(())
     }

@@ -25,6 +25,11 @@ impl WrittenColumn {
         }
     }
 
+    /// The largest distance of the numbers that could have been written.
+    pub fn largest_step(&self) -> f64 {
+        self.steps.iter().copied().fold(0.0, f64::max)
+    }
+
     /// The root mean square of the possible rounding, after the values are `read` in another measure and unit.
     pub fn rounding(&self, read: &dyn Fn(f64) -> f64) -> f64 {
         let square = |(value, step): (&f64, &f64)| {

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::document::{Faulty, Head, column_named};
+use crate::document::{ColumnNames, Faulty, Head, Table, column_meaning, column_named};
 use crate::statistics::extremes;
 use crate::units::{self, Dimension};
 
@@ -10,6 +10,9 @@ use crate::units::{self, Dimension};
 pub const ROWS: &str = "rows";
 /// The key of the nominal strains between which rows are fitted.
 pub const STRAIN_RANGE: &str = "strain range";
+
+/// Names of the column that says to which protocol a row belongs.
+const PROTOCOLS: &ColumnNames<()> = &[((), "setname set_name protocol protocol_name")];
 
 /// What a row must fulfil.
 enum Condition {
@@ -33,6 +36,22 @@ pub fn chosen_rows(head: &Head, rows: &[usize]) -> Faulty<Vec<usize>> {
         return Err(head.fault_of(ROWS, "the rows leave no row", hint));
     }
     Ok(chosen)
+}
+
+/// The rows of each protocol with its name; all rows without a name where no column names protocols.
+pub fn protocols(table: &Table) -> Vec<(String, Range<usize>)> {
+    let Some(column) = column_meaning(PROTOCOLS, (), table) else {
+        return vec![(String::new(), 0..table.rows.len())];
+    };
+    let mut all: Vec<(String, Range<usize>)> = Vec::new();
+    for row in 0..table.rows.len() {
+        let name = table.field(row, column).unwrap_or_default();
+        match all.last_mut() {
+            Some((known, rows)) if *known == name => rows.end = row + 1,
+            _ => all.push((name, row..row + 1)),
+        }
+    }
+    all
 }
 
 /// The part of a table's text with the lines that are stated by [`ROWS`]; all of it where none are, or where the statement cannot be read.
@@ -59,16 +78,16 @@ fn start_of(text: &str, line: usize) -> usize {
 /// A fault where the statement cannot be read, or leaves no row.
 pub fn rows_in_range(
     head: &Head,
-    rows: Range<usize>,
+    rows: &[usize],
     strain: impl Fn(usize) -> f64,
 ) -> Faulty<Vec<usize>> {
     let Some([low, high]) = strain_range(head)? else {
-        return Ok(rows.collect());
+        return Ok(rows.to_vec());
     };
     let is_within = |row: &usize| (low..=high).contains(&strain(*row));
-    let chosen: Vec<usize> = rows.clone().filter(is_within).collect();
+    let chosen: Vec<usize> = rows.iter().copied().filter(is_within).collect();
     if chosen.is_empty() {
-        let [least, most] = extremes(rows.map(strain));
+        let [least, most] = extremes(rows.iter().map(|row| strain(*row)));
         let hint = format!(
             "the strains go from {least:.4} to {most:.4} there, counted from the zero; those of compression are negative"
         );

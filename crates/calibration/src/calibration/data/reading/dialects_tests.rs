@@ -109,6 +109,88 @@ fn two_axes_of_displacements_and_forces_need_the_thickness_alone_where_sizes_are
     assert_contains(&missing, "the length is not stated");
 }
 
+/// A size less its displacement is the length at rest in every row, within the digits of both columns.
+#[test]
+fn sizes_and_displacements_that_contradict_are_refused_with_the_first_line() {
+    let text = |head: &str| {
+        let rows = (0..25).map(|row| {
+            let x = 0.01 * f64::from(row);
+            let [first, second] = [8.0 * x, 7.0 * x];
+            format!(
+                "{:.2},{:.2},{first:.4},{second:.4},{x},{x}\n",
+                8.0 + first,
+                7.0 + second
+            )
+        });
+        format!("{head},XForce_N,YForce_N\n{}", rows.collect::<String>())
+    };
+    let thickness = [("thickness", "1 mm")];
+    let right = "XSize_mm,YSize_mm,XDisplacement_mm,YDisplacement_mm";
+    assert!(read(&text(right), &thickness).is_ok());
+    for (head, size, displacement, line) in [
+        (
+            right.replace("XDisplacement_mm", "XDisplacement_um"),
+            "XSize_mm",
+            "XDisplacement_um",
+            3,
+        ),
+        (
+            right.replace("YSize_mm", "YSize_cm"),
+            "YSize_cm",
+            "YDisplacement_mm",
+            3,
+        ),
+        (
+            "YSize_mm,XSize_mm,XDisplacement_mm,YDisplacement_mm".to_owned(),
+            "XSize_mm",
+            "XDisplacement_mm",
+            4,
+        ),
+    ] {
+        let refused = read(&text(&head), &thickness).unwrap_err();
+        assert_contains(&refused, &format!("`{size}` less `{displacement}` is"));
+        assert_contains(&refused, &format!("a.csv:{line}"));
+        let stated = [("thickness", "1 mm"), ("length", "8 mm"), ("width", "7 mm")];
+        assert!(read(&text(&head), &stated).is_ok(), "{head}");
+    }
+}
+
+/// Two protocols of three cycles each, of which the second one moves the first axis little: a cycle is one of its protocol.
+#[test]
+fn the_cycle_of_a_biaxial_record_is_chosen_in_each_protocol() {
+    let text = |names: &str| {
+        let mut text = format!("{names},stretch_1,stretch_2,P1 [MPa],P2 [MPa]\n");
+        for (name, ratio) in [("equal", [1.0, 1.0]), ("across", [0.1, 1.0])] {
+            for row in 0..120 {
+                let share = f64::from(20 - (row % 40 - 20_i32).abs()) / 20.0;
+                let [x, y] = ratio.map(|one| 0.2 * one * share);
+                text += &format!("{name},{},{},{},{}\n", 1.0 + x, 1.0 + y, x + 0.1 * y, y);
+            }
+        }
+        text
+    };
+    let with = |names: &str, cycle: &str| {
+        read(&text(names), &[("test", "biaxial"), ("cycle", cycle)]).unwrap()
+    };
+    for (cycle, lines) in [
+        ("last", ["lines 82 to 102", "lines 202 to 222"]),
+        ("first", ["lines 2 to 22", "lines 122 to 142"]),
+        ("2", ["lines 42 to 62", "lines 162 to 182"]),
+    ] {
+        for names in ["SetName", "Protocol"] {
+            let data = with(names, cycle);
+            assert_eq!(data.observations.len(), 2 * 2 * 21);
+            assert_eq!(data.protocols().len(), 2);
+            for (index, name) in ["equal", "across"].into_iter().enumerate() {
+                let remark = &data.remarks[index];
+                assert_contains(remark, &format!("protocol `{name}`: 3 cycles found"));
+                assert_contains(remark, lines[index]);
+            }
+        }
+        assert_eq!(with("Sample", cycle).remarks.len(), 1);
+    }
+}
+
 #[test]
 fn measures_of_lagrange_and_of_the_second_piola_kirchhoff_stress_are_converted() {
     let text = |head: &str, strain: fn(f64) -> f64, factor: fn(f64) -> f64| {
