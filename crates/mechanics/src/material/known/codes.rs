@@ -120,10 +120,10 @@ fn meaning(code: Code, law: &str, name: &str) -> Result<&'static str, Error> {
 fn bulk_modulus(name: &str, text: &str) -> Result<Option<f64>, Error> {
     let refused = || {
         let message = format!("{name}: \"{text}\" is no reciprocal of a stress");
-        Error::input(
-            message,
-            "write it as \"0.1 1/MPa\"; the bulk modulus is 2/D",
-        )
+        let hint = format!(
+            "write it as \"0.1 1/MPa\": the bulk modulus is 2/{name}; leave {name} out of an incompressible material, of which it is 0"
+        );
+        Error::input(message, hint)
     };
     let (number, unit) = text.trim().split_once(' ').ok_or_else(refused)?;
     let number: f64 = number.parse().map_err(|_| refused())?;

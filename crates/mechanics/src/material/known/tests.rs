@@ -239,12 +239,12 @@ fn what_is_missing_or_contradicts_is_told_with_a_remedy() {
     ] {
         assert!(message.contains(expected), "{expected}: {message}");
     }
-    let stated = parameters(&[("C10", "0.1 MPa"), ("D1", "0.4")]);
-    let fault = law("neo-hooke")
-        .with_parameters_of(Code::Abaqus, &stated)
-        .unwrap_err();
-    assert!(
-        fault.to_string().contains("reciprocal of a stress"),
-        "{fault}"
-    );
+    for constant in ["0.4", "0"] {
+        let stated = parameters(&[("C10", "0.1 MPa"), ("D1", constant)]);
+        let fault = law("neo-hooke").with_parameters_of(Code::Abaqus, &stated);
+        let message = fault.unwrap_err().to_string();
+        for part in ["reciprocal of a stress", "leave D1 out"] {
+            assert!(message.contains(part), "{message}");
+        }
+    }
 }
