@@ -224,9 +224,12 @@ fn the_example_gives_what_the_guide_says() {
         "0 mm",
         "--together",
     ];
-    gelbench(folder.path(), &arguments).success();
+    let done = gelbench(folder.path(), &arguments).success();
     let actual = report_of_correction(folder.path());
     let combinations = actual["problem"]["combinations"].as_array().unwrap();
     assert_eq!(combinations.len(), 3);
     assert!(combinations[0]["is_determined"].as_bool().unwrap());
+    // All stresses have a factor in common, so that a parameter which is not determined does not stay at its initial value.
+    let printed = words(&done.get_output().stdout);
+    assert!(!printed.contains("initial value"), "{printed}");
 }

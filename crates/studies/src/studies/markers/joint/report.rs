@@ -67,7 +67,11 @@ pub fn summary(
             parameter.key,
             decimals(value.value, 6),
             unit.unwrap_or_default(),
-            interval(value, explained, " (not determined: initial value)")
+            interval(
+                value,
+                explained,
+                " (not determined: the value at which the search ended)"
+            )
         )
     }));
     lines.extend(undetermined(estimate).map(|direction| {
