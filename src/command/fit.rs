@@ -92,13 +92,20 @@ pub fn fit(arguments: FitArguments) -> Outcome {
         check_history(&reading)?;
     }
     let tests = read_tests(&arguments.data, &reading)?;
+    let (law, bounds) = match arguments.law {
+        Some(law) => {
+            let (law, bounds) = arguments.parameters.of(law)?;
+            (Some(law), bounds)
+        }
+        None => (None, arguments.parameters.bounds()?),
+    };
     let settings = FitSettings {
         weighting: arguments.weighting,
-        bounds: arguments.parameters.bounds()?,
+        bounds,
         starts: arguments.starts.into(),
     };
     let base = arguments.card.as_deref().map(load).transpose()?;
-    let fit = chosen_fit(arguments.law, base, &tests, &settings, memory)?;
+    let fit = chosen_fit(law, base, &tests, &settings, memory)?;
     let tests = fit.fitted_tests(&tests);
     let name = arguments
         .name
@@ -341,7 +348,8 @@ pub fn refit(name: &str) -> Outcome {
         }
         None => {
             let terms = record.relaxation_terms.map(Terms::Exactly);
-            let law = Law::named(&card.law_name).expect("a card that was loaded has a known law");
+            let law = Law::of_card(&card.law_name, &card.choices);
+            let law = law.expect("a card that was loaded has a known law");
             memory(terms, record.softening).fit(law, &tests, &settings)?
         }
     };

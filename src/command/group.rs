@@ -66,9 +66,10 @@ pub fn group(arguments: GroupArguments) -> Outcome {
         let message = format!("both groups have the name `{}`", arguments.names[0]);
         return Err(Error::input(message, "such as --names control,treated"));
     }
+    let (law, bounds) = arguments.parameters.of(arguments.law)?;
     let settings = FitSettings {
         weighting: Weighting::Absolute,
-        bounds: arguments.parameters.bounds()?,
+        bounds,
         ..FitSettings::default()
     };
     let reading = arguments.reading.reading()?;
@@ -76,7 +77,7 @@ pub fn group(arguments: GroupArguments) -> Outcome {
     let mut tests = read_tests(&files, &reading)?;
     Group::check(&tests)?;
     let others = tests.split_off(arguments.data.len());
-    let fitted = |tests: &[TestData]| Group::new(arguments.law, tests, &settings);
+    let fitted = |tests: &[TestData]| Group::new(law, tests, &settings);
     let mut groups = vec![fitted(&tests)?];
     if !others.is_empty() {
         groups.push(fitted(&others)?);

@@ -6,6 +6,7 @@ use super::terminal::together;
 use gelbench_base::error::{Diagnostic, Error};
 use gelbench_base::units::{self, Dimension};
 use gelbench_calibration::calibration::Bounds;
+use gelbench_mechanics::material::registry::Law;
 
 /// What the command line says of the parameters of a fit.
 #[derive(Args)]
@@ -13,13 +14,34 @@ pub struct ParameterBounds {
     /// Keep a parameter within limits, in MPa, rad or as a ratio
     #[arg(long = "bound", value_name = "KEY=LOW..HIGH")]
     bounds: Vec<String>,
-    /// State a parameter instead of fitting it, such as angle="30 deg" or mu="2 kPa"; a bare number is in MPa, rad or a ratio
+    /// State a parameter instead of fitting it, such as angle="30 deg" or mu="2 kPa"; a bare number is in MPa, rad or a ratio. families=one
+    /// gives the law of Holzapfel, Gasser and Ogden one family of fibres
     #[arg(long = "fix", value_name = "KEY=VALUE", value_parser = pair)]
     fixed: Vec<(String, String)>,
 }
 
 impl ParameterBounds {
-    /// Limits of the parameters; those of a stated one are equal.
+    /// The law with its choices that are stated, and limits of the parameters; those of a stated one are equal.
+    pub fn of(&self, law: &'static Law) -> Result<(&'static Law, Bounds), Error> {
+        let (_, entries) = law.unknown();
+        let chosen = |key: &str| entries.choices.iter().find(|(known, _)| *known == key);
+        let (choices, values): (Vec<_>, Vec<_>) = self
+            .fixed
+            .iter()
+            .cloned()
+            .partition(|(key, _)| chosen(key).is_some());
+        let mut law = law;
+        for (key, choice) in &choices {
+            law = law.choosing(key, choice).ok_or_else(|| {
+                let taken = chosen(key).map_or("", |(_, taken)| taken.as_str());
+                let message = format!("fits of {} cannot have {key} = {choice}", law.name);
+                Error::input(message, format!("leave it out: they have {key} = {taken}"))
+            })?;
+        }
+        Ok((law, [bounds(&self.bounds)?, stated(&values)?].concat()))
+    }
+
+    /// Limits of the parameters where no law is named.
     pub fn bounds(&self) -> Result<Bounds, Error> {
         Ok([bounds(&self.bounds)?, stated(&self.fixed)?].concat())
     }

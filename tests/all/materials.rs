@@ -235,6 +235,16 @@ fn a_stated_parameter_is_held_and_stands_on_the_card() {
         let message = words(&fit(wrong).code(2).get_output().stderr);
         assert!(message.contains(why), "{message}");
     }
+    let law = ["--law", "holzapfel-gasser-ogden", "--fix", "families=three"];
+    let refused = gelbench(
+        folder.path(),
+        &[&["materials", "fit", data][..], &law].concat(),
+    );
+    let message = words(&refused.code(2).get_output().stderr);
+    assert!(
+        message.contains("cannot have families = three"),
+        "{message}"
+    );
 }
 
 /// Two groups of uniaxial tests: means, spread and difference in one table, a picture, and a card of each mean law, which a fit of its data

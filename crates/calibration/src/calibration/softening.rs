@@ -170,7 +170,7 @@ fn first_loading(base: Base, tests: &[TestData], settings: &FitSettings) -> Resu
 
 /// A card as the law of the first loading, without parameters to be found.
 fn of_card(card: &Card) -> Result<First, Error> {
-    let law = Law::named(&card.law_name).ok_or_else(|| {
+    let law = Law::of_card(&card.law_name, &card.choices).ok_or_else(|| {
         let message = format!(
             "the law of the card `{}` is not one of gelbench's",
             card.name

@@ -1,11 +1,16 @@
 //! The law of Holzapfel, Gasser and Ogden for sheets with fibres.
 
+use std::f64::consts::FRAC_PI_2;
+
 use super::anisotropic_law::{AnisotropicLaw, AnisotropicSheet};
 use super::code::{Code, CodeLaw};
 use super::jet::Jet;
 use super::law::HyperelasticLaw;
 use super::parameters::Parameters;
 use crate::document::Bound;
+
+/// The key of the number of families.
+const FAMILIES: &str = "families";
 
 /// The law of Holzapfel, Gasser and Ogden: a neo-Hookean matrix with one or two families of fibres in the
 /// plane of the sheet.
@@ -48,18 +53,28 @@ pub struct HolzapfelGasserOgden {
 }
 
 impl HolzapfelGasserOgden {
-    /// Reads the parameters of a card.
+    /// Reads the parameters of a card; values without a card are those of two families.
     pub fn from_card(parameters: &Parameters) -> Box<dyn HyperelasticLaw> {
-        let families = parameters.choice("families", &[("two", 2), ("one", 1)]);
+        let families = parameters.choice(FAMILIES, &[("two", 2), ("one", 1)]);
+        Self::read(parameters, families)
+    }
+
+    /// Reads the parameters of a card; values without a card are those of one family.
+    pub fn one_family_from_card(parameters: &Parameters) -> Box<dyn HyperelasticLaw> {
+        let families = parameters.choice(FAMILIES, &[("one", 1), ("two", 2)]);
+        Self::read(parameters, families)
+    }
+
+    fn read(parameters: &Parameters, families: usize) -> Box<dyn HyperelasticLaw> {
         let (mu, k1) = (
             parameters.stress("mu", Bound::Positive),
             parameters.stress("k1", Bound::NonNegative),
         );
         let k2 = parameters.number("k2", Bound::Positive, [1e-2, 20.0]);
         let kappa = parameters.number("kappa", Bound::Within(0.0, 1.0 / 3.0), [0.0, 0.3]);
-        let (sine, cosine) = parameters
-            .angle("angle", [0.0, std::f64::consts::FRAC_PI_2])
-            .sin_cos();
+        // Two families at θ and −θ are those at −θ and θ.
+        let least = if families == 1 { -FRAC_PI_2 } else { 0.0 };
+        let (sine, cosine) = parameters.angle("angle", [least, FRAC_PI_2]).sin_cos();
         let fibres = [[cosine, sine], [cosine, -sine]];
         Box::new(
             Self {

@@ -48,6 +48,25 @@ impl Law {
         LAWS.iter().find(|law| law.name == name)
     }
 
+    /// The same law with a choice of its cards where values alone are given, such as `families` `one`; `None` where it has none such.
+    pub fn choosing(&self, key: &str, choice: &str) -> Option<&'static Self> {
+        let all = LAWS.iter().chain(CHOSEN);
+        let has_choice = |law: &&'static Self| {
+            let choices = law.unknown().1.choices;
+            let is_choice = |(known, name): &(&str, String)| *known == key && name == choice;
+            choices.iter().any(is_choice)
+        };
+        all.filter(|law| law.name == self.name).find(has_choice)
+    }
+
+    /// The law of a card by its name and choices.
+    pub fn of_card(name: &str, choices: &[(&'static str, String)]) -> Option<&'static Self> {
+        let law = Self::named(name)?;
+        let mut chosen = choices.iter();
+        let chosen = chosen.find_map(|(key, choice)| law.choosing(key, choice));
+        Some(chosen.unwrap_or(law))
+    }
+
     /// The laws that have parameters, or take the curve of a test: those that are fitted.
     pub fn fitted() -> impl Iterator<Item = &'static Self> + Clone {
         LAWS.iter().filter(|law| law.name != ENERGY)
@@ -161,8 +180,8 @@ pub const LAWS: &[Law] = &[
         TableCurve::from_card,
     ),
     law(
-        "holzapfel-gasser-ogden",
-        "Ψ = μ/2 (I₁ − 3) + Σ k₁/(2 k₂) (e^(k₂ ⟨E⟩²) − 1), E = κ (I₁ − 3) + (1 − 3κ)(I₄ − 1)",
+        HOLZAPFEL_GASSER_OGDEN,
+        FIBRES,
         HolzapfelGasserOgden::from_card,
     ),
     law(
@@ -219,6 +238,19 @@ pub const LAWS: &[Law] = &[
         Network::from_card,
     ),
 ];
+
+/// Laws of the table above with another choice where values alone are given, as in fits.
+const CHOSEN: &[Law] = &[law(
+    HOLZAPFEL_GASSER_OGDEN,
+    FIBRES,
+    HolzapfelGasserOgden::one_family_from_card,
+)];
+
+/// The law with one or two families of fibres.
+const HOLZAPFEL_GASSER_OGDEN: &str = "holzapfel-gasser-ogden";
+
+const FIBRES: &str =
+    "Ψ = μ/2 (I₁ − 3) + Σ k₁/(2 k₂) (e^(k₂ ⟨E⟩²) − 1), E = κ (I₁ − 3) + (1 − 3κ)(I₄ − 1)";
 
 const OGDEN_HILL: &str =
     "W = Σ 2 μᵢ/αᵢ² (λ₁^αᵢ + λ₂^αᵢ + λ₃^αᵢ − 3 + (J^(−αᵢ βᵢ) − 1)/βᵢ), βᵢ = νᵢ/(1 − 2νᵢ)";

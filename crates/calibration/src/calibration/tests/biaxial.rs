@@ -1,6 +1,7 @@
 //! Laws of sheets with directions in planar biaxial tests.
 
 use super::*;
+use crate::material::registry::Law;
 use crate::statistics::normal_numbers;
 
 /// Laws with parameters of a soft tissue.
@@ -170,6 +171,25 @@ fn a_convex_energy_is_the_best_one_within_its_limit() {
         let share = a3.value / (a1.value * a2.value).sqrt();
         assert!(share < 1.0 && share > 1.0 - 1e-8, "{share}");
         assert!(actual.quality.at_bound[3]);
+    }
+}
+
+/// Without shear, one family has the stresses of two of half the stiffness; the card says which it is, and leads to the law of its fit.
+#[test]
+fn one_family_of_fibres_is_fitted_where_it_is_stated() {
+    let (name, truth) = TISSUES[0];
+    let two = Law::named(name).unwrap();
+    let one = two.choosing("families", "one").unwrap();
+    assert!(two.choosing("families", "three").is_none());
+    let tests = [noisy_protocols(name, truth, 1e-6, 0)];
+    for (law, families, k1) in [(two, "two", 0.05), (one, "one", 0.1)] {
+        let actual = crate::calibration::fit(law, &tests, &starts(8)).unwrap();
+        assert_parameters(&actual, &[0.02, k1, 8.0, 0.1, 0.5], 1e-2);
+        let text = card_text(&actual, &tests, &Provenance::default());
+        assert_contains(&text, &format!("families = \"{families}\""));
+        let card = Card::parse("card", "card", &text).unwrap();
+        let again = Law::of_card(&card.law_name, &card.choices).unwrap();
+        assert_eq!(again.unknown().1.choices, actual.choices);
     }
 }
 

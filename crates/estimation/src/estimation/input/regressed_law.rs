@@ -46,7 +46,7 @@ impl RegressedLaw {
     pub fn of_card(card: &Card, keys: &[&str]) -> Result<Self, Diagnostic> {
         let fault = |message: String, hint: &str| Err(Diagnostic::error("", message).hint(hint));
         let mut law = Self {
-            law: Law::named(&card.law_name).ok_or_else(|| undefined(card))?,
+            law: Law::of_card(&card.law_name, &card.choices).ok_or_else(|| undefined(card))?,
             measures: (card.stress_measure, card.strain_measure),
             volume: card.volume,
             plane: card.law.plane_state(),

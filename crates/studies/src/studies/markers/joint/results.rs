@@ -87,8 +87,8 @@ pub fn undetermined(estimate: &JointEstimate) -> Option<String> {
         .collect();
     (!open.is_empty()).then(|| {
         format!(
-            "not determined by these frames, and kept as on the card, except for a common factor of all stresses: {}; the other parameters and their intervals assume that this is known: start \
-             from a card close to the material, add frames with larger strains or other loading modes, or leave the parameter out of --fit",
+            "not determined by these frames, and kept as on the card, except for a common factor of all stresses: {}; the other parameters \
+             and their intervals assume that this is known: start from a card close to the material, add frames with larger strains or other loading modes, or leave the parameter out of --fit",
             open.join("; ")
         )
     })
