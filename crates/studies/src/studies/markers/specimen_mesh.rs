@@ -8,6 +8,7 @@ use crate::budget::{Excess, Need};
 use crate::error::{Diagnostic, Error, Severity};
 use crate::images::{ImageFile, Region};
 use crate::markers::{MarkerFiles, MarkerSeries, read_lines};
+use crate::mesh::geometry::least_width;
 use crate::mesh::{CellShape, Exemptions, Mesh, Outline, import};
 use crate::units::decimals;
 
@@ -216,25 +217,30 @@ fn positions(series: &MarkerSeries, gaps_are_holes: bool) -> (Vec<[f64; 2]>, usi
     (tracked.into_iter().chain(lost).collect(), in_gaps)
 }
 
-/// A mesh inside an outline, and the size of its cells in mm. If no size is given, its nodes are as far apart as the markers, but at least 16 cells
-/// go across the specimen, and at most about 5,000 are made, or 20,000 where fewer would not go across.
+/// The area of a triangle with edges of length 1: √3/4.
+const UNIT_TRIANGLE: f64 = 0.433_012_701_892_219_3;
+
+/// The size of the cells in mm with which nodes are as far apart as the markers, but at least 16 cells go across the specimen, however it lies,
+/// and at most about 5,000 are made, or 20,000 where fewer would not go across.
+fn usual_size(outline: &Outline, spacing: f64, shape: CellShape) -> f64 {
+    let smallest = |cells: f64| (outline.area() / (cells * UNIT_TRIANGLE)).sqrt();
+    (shape.degree() as f64 * spacing)
+        .max(smallest(ENOUGH_CELLS))
+        .min(least_width(&outline.outer) / LEAST_ACROSS)
+        .max(smallest(MOST_CELLS))
+}
+
+/// A mesh inside an outline, and the size of its cells in mm: that of the request, or else the usual one.
 fn mesh_inside(
     request: &Request,
     outline: &Outline,
     spacing: f64,
     frames: usize,
 ) -> Result<(Mesh, f64), Error> {
-    // Of a triangle with edges of length 1.
-    let cell_area = 3f64.sqrt() / 4.0;
-    let smallest = |cells: f64| (outline.area() / (cells * cell_area)).sqrt();
-    let [along_x, along_y] = outline.extents();
-    let across = along_x.min(along_y);
-    let size = request.cell_size.unwrap_or(
-        (request.shape.degree() as f64 * spacing)
-            .max(smallest(ENOUGH_CELLS))
-            .min(across / LEAST_ACROSS)
-            .max(smallest(MOST_CELLS)),
-    );
+    let across = least_width(&outline.outer);
+    let size = request
+        .cell_size
+        .unwrap_or_else(|| usual_size(outline, spacing, request.shape));
     if size > across / 2.0 {
         let message = format!(
             "cells of {size} mm are too large for a specimen {} mm wide",
@@ -242,7 +248,7 @@ fn mesh_inside(
         );
         return Err(Error::input(message, "choose a smaller --cell-size"));
     }
-    let triangles = outline.area() / (size * size * cell_area);
+    let triangles = outline.area() / (size * size * UNIT_TRIANGLE);
     let (cells, nodes) = match request.shape {
         CellShape::Triangle3 => (triangles, 0.5 * triangles),
         CellShape::Quad4 => (3.0 * triangles, 3.0 * triangles),
@@ -285,4 +291,21 @@ fn need_of_markers(markers: f64, frames: usize) -> Need {
 fn affords(request: &Request, need: Need, what: &str, smaller: &str) -> Result<(), Error> {
     let excess = |excess: Excess| Error::input(format!("{what} {excess}"), excess.remedy(smaller));
     request.budget.afford(need).map_err(excess)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cells_are_as_large_however_a_specimen_lies() {
+        for degrees in [0.0, 30.0, 45.0, 90.0_f64] {
+            let (sine, cosine) = degrees.to_radians().sin_cos();
+            let corners = [[0.0, 0.0], [50.0, 0.0], [50.0, 20.0], [0.0, 20.0]];
+            let turned = corners.map(|[x, y]| [cosine * x - sine * y, sine * x + cosine * y]);
+            let outline = Outline::of_lines(vec![turned.to_vec()]).unwrap();
+            let size = usual_size(&outline, 1.43, CellShape::Triangle6);
+            assert!((size - 20.0 / 16.0).abs() < 1e-12, "{degrees}: {size}");
+        }
+    }
 }
