@@ -38,25 +38,36 @@ pub fn read(path: &Path, reading: &ReadSettings) -> Result<FileRows, Error> {
     })
 }
 
-/// Reads closed lines: positions in the columns `x`, `y`; several lines have their numbers in a column `line`. `unit` is
+/// Reads closed lines: positions in the columns `x`, `y`; several lines have their numbers or names in a column `line`. `unit` is
 /// the length of the file's unit in mm, where the file does not state it.
 ///
 /// # Errors
 /// [`Error::Input`] with file, line and reason.
 pub fn read_lines(path: &Path, unit: Option<f64>) -> Result<Vec<Vec<[f64; 2]>>, Error> {
     let table = Table::read(path, Table::HINT)?;
-    let ([x, y], number) = columns::of_positions(&table, unit, &["line"], &[])?;
-    let read = [x.0, y.0].into_iter().chain(number);
-    table.check_numbers(read, "give an outline as numbers x, y only")?;
-    let mut lines: Vec<(f64, Vec<[f64; 2]>)> = Vec::new();
-    for (row, _) in &table.rows {
-        let (position, number) = (
-            [row[x.0] * x.1, row[y.0] * y.1],
-            number.map_or(0.0, |n| row[n]),
-        );
-        match lines.iter_mut().find(|(known, _)| *known == number) {
+    let ([x, y], label) = columns::of_positions(&table, unit, &["line"], &[])?;
+    let hint = "give an outline as numbers x, y, and a number or a name of its line in each row where there are several";
+    table.check_numbers([x.0, y.0], hint)?;
+    let mut lines: Vec<(String, Vec<[f64; 2]>)> = Vec::new();
+    for (index, (row, place)) in table.rows.iter().enumerate() {
+        let label = match label {
+            None => String::new(),
+            Some(column) if row[column].is_finite() => row[column].to_string(),
+            Some(column) => match table.field(index, column) {
+                Some(name) if !name.trim().is_empty() => name.trim().to_owned(),
+                _ => {
+                    return Err(table.refuse(
+                        place.clone(),
+                        "column `line`: no line is named",
+                        hint,
+                    ));
+                }
+            },
+        };
+        let position = [row[x.0] * x.1, row[y.0] * y.1];
+        match lines.iter_mut().find(|(known, _)| *known == label) {
             Some((_, line)) => line.push(position),
-            None => lines.push((number, vec![position])),
+            None => lines.push((label, vec![position])),
         }
     }
     Ok(lines.into_iter().map(|(_, line)| line).collect())

@@ -2,7 +2,7 @@ use std::fs;
 use std::path::PathBuf;
 
 use crate::error::Error;
-use crate::markers::{Marker, MarkerFiles, ReadSettings, read};
+use crate::markers::{Marker, MarkerFiles, ReadSettings, read, read_lines};
 
 /// Reads texts as files of these names.
 fn read_texts(files: &[(&str, &str)], reading: &ReadSettings) -> Result<MarkerFiles, Error> {
@@ -410,4 +410,26 @@ fn duplicate_rows_count_once_and_lost_markers_keep_their_positions() {
     let text = "frame,x [mm],y [mm],ux [mm],uy [mm]\n1,0,0,1,2\n1,9,0,1,2\n2,0,0,,\n2,9,0,1,2\n";
     let measured = read_texts(&[("a.csv", text)], &ReadSettings::default()).unwrap();
     assert!(measured.series.lost.is_empty());
+}
+
+#[test]
+fn lines_of_an_outline_have_numbers_or_names() {
+    let read = |labels: [&str; 3]| {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("outline.csv");
+        let [first, again, other] = labels;
+        let text = format!("x [cm],y [cm],line\n0,0,{first}\n1,0,{again}\n0,1,{other}\n");
+        fs::write(&path, text).unwrap();
+        read_lines(&path, None)
+    };
+    for labels in [
+        ["1", "1.0", "2"],
+        ["outer", "outer ", "hole 1"],
+        ["outer", "outer", "2"],
+    ] {
+        let expected = [vec![[0.0, 0.0], [10.0, 0.0]], vec![[0.0, 10.0]]];
+        assert_eq!(read(labels).unwrap(), expected, "{labels:?}");
+    }
+    let error = read(["outer", "", "hole"]).unwrap_err().to_string();
+    assert!(error.contains("no line is named"), "{error}");
 }
