@@ -14,6 +14,7 @@ use super::terminal::{Outcome, Printed, print, print_report, warn};
 use crate::kinds;
 use gelbench_base::error::{Diagnostic, Error};
 use gelbench_base::units::Dimension;
+use gelbench_mechanics::markers::Mistake;
 use gelbench_mechanics::material::HyperelasticLaw;
 use gelbench_mechanics::mesh::Mesh;
 use gelbench_mechanics::problem::{Region, SheetLaws};
@@ -199,7 +200,7 @@ fn window(options: &Options, sites: &Sites, lattice: &Mesh) -> Option<Diagnostic
     Some(Diagnostic::warning("", message).hint(hint))
 }
 
-/// Displacements that all models find larger or smaller by one factor, be it the ratio of two
+/// Displacements that all models find written with one mistake, or larger or smaller by one factor, be it the ratio of two
 /// units or of two load factors.
 fn doubts(compared: &Comparison, differences: &[Difference]) -> Vec<Diagnostic> {
     let ratios: Option<Vec<f64>> = differences.iter().map(Difference::other_unit).collect();
@@ -213,8 +214,14 @@ fn doubts(compared: &Comparison, differences: &[Difference]) -> Vec<Diagnostic> 
         );
         Diagnostic::warning("", message).hint("state the file's unit with --unit")
     });
+    let mistake = differences.first().and_then(|first| first.mistake);
+    let of_all = |mistake: &Mistake| differences.iter().all(|one| one.mistake == Some(*mistake));
+    let of_writing = mistake.filter(of_all).map(|mistake| {
+        let (seems, hint) = mistake.words();
+        Diagnostic::warning("", format!("the imported field seems to be {seems}")).hint(hint)
+    });
     let scaled = differences.iter().all(Difference::is_scaled);
-    let doubt = of_places.or(of_displacements).or_else(|| {
+    let doubt = of_places.or(of_writing).or(of_displacements).or_else(|| {
         let share = 1.0 / differences[0].factor;
         let at = compared.factor;
         scaled.then(|| {

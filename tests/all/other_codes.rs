@@ -151,7 +151,7 @@ fn a_field_of_ones_own_deviates_by_nothing() {
 }
 
 /// What a run says of the corrected field and what a comparison with its finite elements says is the same, but for the places; a shift
-/// of the whole field is all of the finite elements' difference then.
+/// of the whole field is all of the finite elements' difference then, and exchanged components are all of every model's.
 #[test]
 fn a_comparison_says_what_a_run_says_and_which_part_is_a_motion_of_the_whole_body() {
     let folder = folder_with(SMALL);
@@ -190,6 +190,17 @@ fn a_comparison_says_what_a_run_says_and_which_part_is_a_motion_of_the_whole_bod
         ),
         "{message}"
     );
+
+    let nodes = moved.mesh.nodes.iter().zip(moved.displacement.chunks(2));
+    let rows = nodes.map(|([x, y], u)| format!("{x},{y},{},{}\n", u[1], u[0]));
+    let table = format!(
+        "X [mm],Y [mm],ux [mm],uy [mm]\n{}",
+        rows.collect::<String>()
+    );
+    fs::write(position.join("exchanged.csv"), table).unwrap();
+    let compared = json(&["compare", "small.toml", "exchanged.csv", "--json"], 1);
+    let message = compared["doubts"][0].as_str().unwrap();
+    assert!(message.contains("with x and y exchanged"), "{message}");
 }
 
 /// A file in cm under heads in mm is a field on a corner of the specimen, which is as little off as the strain is uniform.

@@ -12,6 +12,7 @@ pub mod columns;
 mod frames;
 mod layouts;
 mod matrices;
+mod mistake;
 mod outside;
 mod plausible;
 mod positions;
@@ -23,6 +24,7 @@ mod table;
 mod understood;
 
 pub use frames::{Frame, Marker, MarkerSeries};
+pub use mistake::Mistake;
 pub use plausible::{MarkersOnMesh, check_thickness, place_on, unit_ratio};
 pub use read::{MarkerFiles, number_at_end, read};
 pub use role::{ChosenColumns, Role};

@@ -12,7 +12,7 @@ use std::path::Path;
 
 use crate::document::{Table, is_table_path};
 use crate::error::Error;
-use crate::markers::unit_ratio;
+use crate::markers::{Mistake, unit_ratio};
 use crate::mesh::geometry::sides;
 use crate::mesh::{
     ImportedField, Mesh, import_field, largest_distance, weighted_distance, weighted_norm,
@@ -106,6 +106,16 @@ pub struct Difference {
     pub shift: RigidMotion,
     /// The remaining difference in relative L2 in % after this motion.
     pub shifted_percent: f64,
+    /// The mistake in how the imported field was written that explains most of the difference.
+    pub mistake: Option<Mistake>,
+}
+
+/// Differences in relative L2 in % up to which neither a factor nor a mistake is sought behind them.
+const SMALL: f64 = 10.0;
+
+/// Whether a change of the imported field that leaves the second of two differences in % explains most of the first one.
+fn explains_most(percent: f64, left: f64) -> bool {
+    left < percent.min(100.0) / 3.0
 }
 
 impl Difference {
@@ -117,14 +127,13 @@ impl Difference {
 
     /// Whether a factor, as between two load factors, explains most of the difference.
     pub fn is_scaled(&self) -> bool {
-        const LARGE: f64 = 10.0;
-        self.percent > LARGE && self.scaled_percent < self.percent / 3.0
+        self.percent > SMALL && explains_most(self.percent, self.scaled_percent)
     }
 
     /// Whether a motion of the whole body, as of a camera or of other axes, explains most of the difference.
     pub fn is_shifted(&self) -> bool {
         const LARGE: f64 = 0.5;
-        self.percent > LARGE && self.shifted_percent < self.percent / 3.0
+        self.percent > LARGE && explains_most(self.percent, self.shifted_percent)
     }
 }
 
@@ -289,10 +298,14 @@ impl Sites {
     /// `Mismatch::Zero` where the imported field is zero, so that no difference can be related to it.
     pub fn difference(&self, field: &ModelField) -> Result<Difference, Mismatch> {
         let computed = self.at(field);
-        let size = weighted_norm(&self.expected, &self.weights);
-        if size == 0.0 {
+        if weighted_norm(&self.expected, &self.weights) == 0.0 {
             return Err(Mismatch::Zero);
         }
+        let percent_from = |field: &[f64]| {
+            let size = weighted_norm(field, &self.weights);
+            100.0 * weighted_distance(&computed, field, &self.weights) / size
+        };
+        let percent = percent_from(&self.expected);
         let (largest, position) = largest_distance(&computed, &self.expected);
         let product = |a: &[f64], b: &[f64]| -> f64 {
             let terms = a.iter().zip(b).zip(0..);
@@ -301,19 +314,28 @@ impl Sites {
                 .sum()
         };
         let factor = product(&computed, &self.expected) / product(&self.expected, &self.expected);
-        let scaled = self.expected.iter().map(|expected| factor * expected);
-        let scaled: Vec<f64> = scaled.collect();
+        let scaled: Vec<f64> = self.expected.iter().map(|u| factor * u).collect();
         let (shift, shifted) = self.shifted_to(&computed);
+        let left = Mistake::ALL.map(|mistake| (percent_from(&self.without(mistake)), mistake));
+        let nearest = left.into_iter().min_by(|(a, _), (b, _)| a.total_cmp(b));
+        let mistake = nearest.filter(|(left, _)| percent > SMALL && explains_most(percent, *left));
         Ok(Difference {
-            factor,
-            shift,
-            shifted_percent: 100.0 * weighted_distance(&computed, &shifted, &self.weights) / size,
-            scaled_percent: 100.0 * weighted_distance(&computed, &scaled, &self.weights)
-                / (factor.abs() * size),
-            percent: 100.0 * weighted_distance(&computed, &self.expected, &self.weights) / size,
+            percent,
             largest,
             position: self.positions[position],
+            factor,
+            scaled_percent: percent_from(&scaled),
+            shift,
+            shifted_percent: percent_from(&shifted),
+            mistake: mistake.map(|(_, mistake)| mistake),
         })
+    }
+
+    /// The imported field with a mistake undone.
+    fn without(&self, mistake: Mistake) -> Vec<f64> {
+        let intended = |(at, u): (&[f64; 2], &[f64])| mistake.intended(*at, [u[0], u[1]]);
+        let sites = self.positions.iter().zip(self.expected.chunks(2));
+        sites.flat_map(intended).collect()
     }
 
     /// The motion of the whole body by which the imported field comes nearest to another one by least squares, and the field so

@@ -304,6 +304,31 @@ fn displacements_of_another_load_factor_are_told() {
 }
 
 #[test]
+fn a_mistake_in_how_a_field_is_written_is_told() {
+    let difference_of = |written: &dyn Fn([f64; 2], [f64; 2]) -> [f64; 2]| {
+        let positions = [[10.0, 5.0], [20.0, 5.0], [25.0, 2.0], [3.0, 8.0]];
+        let rows = positions.map(|[x, y]| {
+            let [ux, uy] = written([x, y], field([x, y]));
+            format!("{x},{y},{ux},{uy}\n")
+        });
+        let table = format!("X_mm,Y_mm,ux_mm,uy_mm\n{}", rows.concat());
+        compared(".csv", &table, &SETTINGS).1
+    };
+    for mistake in Mistake::ALL {
+        let difference = difference_of(&|[x, y]: [f64; 2], [ux, uy]: [f64; 2]| match mistake {
+            Mistake::FinalPositions => [x + ux, y + uy],
+            // The others undo themselves.
+            _ => mistake.intended([x, y], [ux, uy]),
+        });
+        assert_eq!(difference.mistake, Some(mistake), "{difference:?}");
+    }
+    for factor in [1.0, 0.8, 3.0, 1e-3] {
+        let difference = difference_of(&|_, u: [f64; 2]| u.map(|u| factor * u));
+        assert_eq!(difference.mistake, None, "{difference:?}");
+    }
+}
+
+#[test]
 fn a_motion_of_the_whole_body_is_told_from_a_strain() {
     let (turn, offset) = (0.02, [0.3, -0.2]);
     let row = |[x, y]: [f64; 2], moved: bool| {

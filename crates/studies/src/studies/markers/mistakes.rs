@@ -19,21 +19,8 @@ use super::MarkerStudy;
 use super::quantities::{residual_rms, rounding, used};
 use crate::error::Diagnostic;
 use crate::estimation::{EdgeCondition, EdgeOutcome, FieldEstimate};
-use crate::markers::{Frame, Marker};
+use crate::markers::{Frame, Marker, Mistake};
 use crate::units::decimals;
-
-/// What a field was written as, instead of displacements along x and y from rest to the frame.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Mistake {
-    /// Positions in the frame.
-    FinalPositions,
-    /// Displacements from the frame to rest.
-    Reversed,
-    /// Displacements along y and x.
-    Exchanged,
-    /// Displacements against one of the axes.
-    Mirrored(usize),
-}
 
 /// By how much Akaike's criterion is smaller where a mistake is reported: by chance this happens to one of e¹⁵ fields.
 const SURE: f64 = 30.0;
@@ -47,68 +34,20 @@ const MUCH: f64 = 0.5;
 /// The mean principal stretches that specimens are believed to have.
 const STRETCHES: std::ops::Range<f64> = 0.2..5.0;
 
-impl Mistake {
-    const ALL: [Self; 5] = [
-        Self::FinalPositions,
-        Self::Reversed,
-        Self::Exchanged,
-        Self::Mirrored(0),
-        Self::Mirrored(1),
-    ];
-
-    /// The marker with the displacement that was intended.
-    fn intended(self, marker: Marker) -> Marker {
-        let ([x, y], [ux, uy]) = (marker.position, marker.displacement);
-        let displacement = match self {
-            Self::FinalPositions => [ux - x, uy - y],
-            Self::Reversed => [-ux, -uy],
-            Self::Exchanged => [uy, ux],
-            Self::Mirrored(0) => [-ux, uy],
-            Self::Mirrored(_) => [ux, -uy],
-        };
-        Marker {
-            displacement,
-            ..marker
+/// Whether the mean displacement gradient of the intended field is that of a test: a specimen that is pulled is not only sheared, and becomes
+/// narrower.
+fn is_plausible(mistake: Mistake, written: &Matrix2<f64>, intended: &Matrix2<f64>) -> bool {
+    let deformation = Matrix2::identity() + intended;
+    let stretches = deformation.singular_values();
+    let is_sound = deformation.determinant() > 0.0
+        && stretches.iter().all(|stretch| STRETCHES.contains(stretch));
+    let normal_strain = |h: &Matrix2<f64>| h.m11.abs().max(h.m22.abs());
+    is_sound
+        && match mistake {
+            Mistake::FinalPositions | Mistake::Reversed => true,
+            Mistake::Exchanged => normal_strain(intended) > normal_strain(written),
+            Mistake::Mirrored(_) => intended.m11 * intended.m22 < 0.0,
         }
-    }
-
-    /// Whether the mean displacement gradient of the intended field is that of a test: a specimen that is pulled is not only sheared, and
-    /// becomes narrower.
-    fn is_plausible(self, written: &Matrix2<f64>, intended: &Matrix2<f64>) -> bool {
-        let deformation = Matrix2::identity() + intended;
-        let stretches = deformation.singular_values();
-        let is_sound = deformation.determinant() > 0.0
-            && stretches.iter().all(|stretch| STRETCHES.contains(stretch));
-        let normal_strain = |h: &Matrix2<f64>| h.m11.abs().max(h.m22.abs());
-        is_sound
-            && match self {
-                Self::FinalPositions | Self::Reversed => true,
-                Self::Exchanged => normal_strain(intended) > normal_strain(written),
-                Self::Mirrored(_) => intended.m11 * intended.m22 < 0.0,
-            }
-    }
-
-    /// What the field seems to be, and what to do.
-    fn words(self) -> (String, &'static str) {
-        match self {
-            Self::FinalPositions => (
-                "final positions instead of displacements".to_owned(),
-                "subtract the positions at rest: ux = x in the frame − x at rest",
-            ),
-            Self::Reversed => (
-                "displacements with reversed sign".to_owned(),
-                "reverse the sign of both columns: displacements lead from rest to the frame",
-            ),
-            Self::Exchanged => (
-                "displacements with x and y exchanged".to_owned(),
-                "exchange the two columns",
-            ),
-            Self::Mirrored(axis) => (
-                format!("mirrored along {}", ["x", "y"][axis]),
-                "reverse the sign of that column: positions and displacements share their axes",
-            ),
-        }
-    }
 }
 
 impl MarkerStudy {
@@ -191,12 +130,15 @@ impl MarkerStudy {
         }
         let gradient = frame.mean_gradient()?;
         let tried = Mistake::ALL.into_par_iter().filter_map(|mistake| {
-            let markers = frame.markers.iter().map(|marker| mistake.intended(*marker));
+            let markers = frame.markers.iter().map(|marker| Marker {
+                displacement: mistake.intended(marker.position, marker.displacement),
+                ..*marker
+            });
             let intended = Frame {
                 markers: markers.collect(),
                 ..frame.clone()
             };
-            if !mistake.is_plausible(&gradient, &intended.mean_gradient()?) {
+            if !is_plausible(mistake, &gradient, &intended.mean_gradient()?) {
                 return None;
             }
             let estimate = self.estimate_frame(&intended).ok()?;
