@@ -30,6 +30,7 @@ mod logarithm;
 pub mod marlow;
 mod may_newman;
 mod measures;
+pub mod mirrored;
 mod monotone_cubic;
 mod mooney_rivlin;
 mod neo_hooke;

@@ -12,6 +12,8 @@
 //! Only fields whose misfit is more than their noise, or in which no edge is free where the data may choose, are tried, and of a file only the
 //! frame that moves most, because all frames of a file have the same mistake.
 
+use std::sync::Arc;
+
 use nalgebra::Matrix2;
 use rayon::prelude::*;
 
@@ -20,6 +22,8 @@ use super::quantities::{residual_rms, rounding, used};
 use crate::error::Diagnostic;
 use crate::estimation::{EdgeCondition, EdgeOutcome, FieldEstimate};
 use crate::markers::{Frame, Marker, Mistake};
+use crate::material::PlaneState;
+use crate::material::mirrored::MirroredLaw;
 use crate::units::decimals;
 
 /// By how much Akaike's criterion is smaller where a mistake is reported: by chance this happens to one of e¹⁵ fields.
@@ -60,8 +64,7 @@ impl MarkerStudy {
         let doubtful = frames.filter(|(_, estimate)| may_be_mistaken(estimate));
         let (frame, estimate) =
             doubtful.max_by(|(a, _), (b, _)| a.motion().total_cmp(&b.motion()))?;
-        let (mistake, intended) = self.likeliest(frame, Some(estimate))?;
-        let (seems, hint) = mistake.words();
+        let ((seems, hint), intended) = self.likeliest(frame, Some(estimate))?;
         let message = format!(
             "frame {}: the field seems to be {seems}: with this undone {}",
             frame.number,
@@ -72,10 +75,9 @@ impl MarkerStudy {
 
     /// Why a frame seems to have no estimate: a mistake in its file, or wrong conditions of edges.
     pub(super) fn cause_without_solution(&self, frame: &Frame) -> Option<Diagnostic> {
-        let Some((mistake, _)) = self.likeliest(frame, None) else {
+        let Some(((seems, hint), _)) = self.likeliest(frame, None) else {
             return self.wrong_conditions(frame);
         };
-        let (seems, hint) = mistake.words();
         let message = format!("the field has no solution, but seems to be {seems}");
         Some(Diagnostic::error("", message).hint(hint))
     }
@@ -119,12 +121,12 @@ impl MarkerStudy {
         estimate.is_ok_and(|estimate| estimate.is_explained())
     }
 
-    /// The mistake that explains the most, and the estimate of the field that was intended.
+    /// What explains the most, in words with a remedy, and the estimate of the field that was intended.
     fn likeliest(
         &self,
         frame: &Frame,
         written: Option<&FieldEstimate>,
-    ) -> Option<(Mistake, FieldEstimate)> {
+    ) -> Option<((String, &'static str), FieldEstimate)> {
         if self.coarse.is_some() || self.is_of_images() {
             return None;
         }
@@ -141,12 +143,34 @@ impl MarkerStudy {
             if !is_plausible(mistake, &gradient, &intended.mean_gradient()?) {
                 return None;
             }
-            let estimate = self.estimate_frame(&intended).ok()?;
-            is_nearer(&estimate, written).then_some((mistake, estimate))
+            Some((mistake.words(), self.estimate_frame(&intended).ok()?))
         });
-        let tried: Vec<_> = tried.collect();
+        let mut tried: Vec<_> = tried.collect();
+        let mirrored = self.mirrored().map(|study| study.estimate_frame(frame));
+        let image_axes = (
+            "given in axes of an image, with y down".to_owned(),
+            "state --y-axis down; or the fibres on the card have the opposite angle",
+        );
+        let mirrored = mirrored.and_then(Result::ok);
+        tried.extend(mirrored.map(|estimate| (image_axes, estimate)));
+        tried.retain(|(_, estimate)| is_nearer(estimate, written));
         let least = |(_, a): &(_, _), (_, b): &(_, _)| criterion(a).total_cmp(&criterion(b));
         tried.into_iter().min_by(least)
+    }
+
+    /// The study with its material seen in a mirror, which is that of the other y axis; `None` where no directions of one sheet tell it from
+    /// this one.
+    fn mirrored(&self) -> Option<Self> {
+        let law = &self.card.law;
+        let is_sheet = law.plane_state() == PlaneState::Stress && law.bulk_modulus().is_none();
+        let alone = self.regions.iter().all(|(_, card)| card.law.is_isotropic());
+        let is_known = self.regressed.is_none() && !self.understood.turned_up;
+        (is_sheet && !law.is_isotropic() && alone && is_known).then(|| {
+            let mut mirrored = self.clone();
+            let law = Arc::clone(law);
+            mirrored.card.law = Arc::new(MirroredLaw { law });
+            mirrored
+        })
     }
 }
 
@@ -233,11 +257,16 @@ fn criterion(estimate: &FieldEstimate) -> f64 {
 #[cfg(test)]
 mod tests {
     use std::fmt::Write;
+    use std::path::Path;
+
+    use nalgebra::Vector2;
 
     use super::*;
     use crate::budget::Budget;
     use crate::estimation::Answer;
     use crate::markers::ReadSettings;
+    use crate::material::Card;
+    use crate::material::sheet::{Kinematics, PlaneTensor};
     use crate::mesh::CellShape;
     use crate::statistics::normal_numbers;
     use crate::studies::markers::{Conditions, MeshSource, Request};
@@ -250,20 +279,29 @@ mod tests {
     ) -> (Option<String>, Answer) {
         let mut normal = normal_numbers(7);
         let mut drawn = || noise * normal();
-        let mut table = "x [mm],y [mm],ux [mm],uy [mm]\n".to_owned();
-        for position in (0..13 * 5).map(|k| [5.0 * f64::from(k / 5), 5.0 * f64::from(k % 5)]) {
-            let [ux, uy] = [
+        let card = Card::load("neo-hooke", Path::new(".")).unwrap();
+        judged(card, |position| {
+            let u = [
                 (x - 1.0) * position[0] + drawn(),
                 (y - 1.0) * position[1] + drawn(),
             ];
-            let [ux, uy] = match mistake {
-                None => [ux, uy],
-                Some(Mistake::FinalPositions) => [position[0] + ux, position[1] + uy],
-                Some(Mistake::Reversed) => [-ux, -uy],
-                Some(Mistake::Exchanged) => [uy, ux],
-                Some(Mistake::Mirrored(0)) => [-ux, uy],
-                Some(Mistake::Mirrored(_)) => [ux, -uy],
-            };
+            match mistake {
+                None => u,
+                Some(Mistake::FinalPositions) => [position[0] + u[0], position[1] + u[1]],
+                // The others undo themselves.
+                Some(mistake) => mistake.intended(position, u),
+            }
+        })
+    }
+
+    /// The doubt about such a strip, whose file holds these displacements, and the answer.
+    fn judged(
+        card: Card,
+        mut written: impl FnMut([f64; 2]) -> [f64; 2],
+    ) -> (Option<String>, Answer) {
+        let mut table = "x [mm],y [mm],ux [mm],uy [mm]\n".to_owned();
+        for position in (0..13 * 5).map(|k| [5.0 * f64::from(k / 5), 5.0 * f64::from(k % 5)]) {
+            let [ux, uy] = written(position);
             writeln!(table, "{},{},{ux},{uy}", position[0], position[1]).unwrap();
         }
         let folder = tempfile::tempdir().unwrap();
@@ -273,7 +311,7 @@ mod tests {
             files: vec![file],
             reading: ReadSettings::default(),
             images: Default::default(),
-            material: "neo-hooke".to_owned(),
+            material: String::new(),
             thickness: 1.0,
             mesh: MeshSource::Data,
             cell_size: Some(5.0),
@@ -283,7 +321,7 @@ mod tests {
             forces: None,
             budget: Budget::USUAL,
         };
-        let mut study = MarkerStudy::prepare(request, &|_| ()).unwrap();
+        let mut study = MarkerStudy::prepare_with(card, request, &|_| ()).unwrap();
         match study.estimate(&|_| ()) {
             Ok(estimates) => {
                 let doubt = study.mistake.map(|mistake| mistake.message);
@@ -321,6 +359,37 @@ mod tests {
                 assert_eq!(doubt, None, "{stretches:?} {noise}");
                 assert_ne!(answer, Answer::NotExplained, "{stretches:?} {noise}");
             }
+        }
+    }
+
+    /// A strip with fibres at 30 degrees that is pulled is sheared by them; in a mirror they have the opposite angle.
+    #[test]
+    fn a_y_axis_that_points_down_is_told_by_fibres() {
+        let card = |degrees: f64| {
+            let text = format!(
+                "title = \"fibres\"\nlaw = \"holzapfel-gasser-ogden\"\n[parameters]\nmu = \"0.01 MPa\"\nk1 = \"0.02 MPa\"\n\
+                 k2 = 1.5\nkappa = 0.08\nfamilies = \"one\"\nangle = \"{degrees} deg\"\n"
+            );
+            Card::parse("fibres", "fibres.toml", &text).unwrap()
+        };
+        let law = card(30.0).law;
+        let mut h = PlaneTensor::new(0.2, 0.0, 0.0, -0.1);
+        // No load on the long edges.
+        for _ in 0..20 {
+            let at = law.response(&Kinematics::new(&h).unwrap());
+            let (p, t) = (at.first_piola_kirchhoff_stress, at.tangent);
+            let across = Matrix2::new(t[(1, 1)], t[(1, 3)], t[(3, 1)], t[(3, 3)]);
+            let step = across.try_inverse().unwrap() * Vector2::new(p[1], p[3]);
+            h -= PlaneTensor::new(0.0, step[0], 0.0, step[1]);
+        }
+        for (degrees, is_mirrored) in [(30.0, false), (-30.0, true)] {
+            let mut normal = normal_numbers(7);
+            let (doubt, answer) = judged(card(degrees), |[x, y]| {
+                [h[0] * x + h[1] * y, h[2] * x + h[3] * y].map(|u| u + 0.005 * normal())
+            });
+            assert_eq!(answer == Answer::NotExplained, is_mirrored, "{doubt:?}");
+            let named = doubt.iter().any(|doubt| doubt.contains("with y down"));
+            assert_eq!(named, is_mirrored, "{degrees}: {doubt:?}");
         }
     }
 }
