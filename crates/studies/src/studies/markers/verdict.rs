@@ -7,7 +7,7 @@ use super::finding::span;
 use crate::estimation::{
     Alternative, Answer, FieldEstimate, MovedPart, NoiseCorrelation, Reason, Trial, Verdict,
 };
-use crate::markers::Frame;
+use crate::markers::{Frame, Understood};
 use crate::results::{Block, Table};
 use crate::statistics::extremes;
 use crate::units::decimals;
@@ -131,10 +131,19 @@ fn residual(rms: f64) -> Option<String> {
 /// An alternative in words, with the edge gap to state where it moves an outline that was made from markers.
 fn trial_words(study: &MarkerStudy, trial: &Trial) -> String {
     let words = trial.alternative.words();
+    let places = may_hold_places_in_frame(&trial.alternative, &study.understood);
     match other_gap(study, &trial.alternative) {
         Some(gap) => format!("{words} (about --edge-gap \"{gap} mm\")"),
+        None if places => format!("{words} (or positions in the frame: --places frame)"),
         None => words,
     }
+}
+
+/// Whether an alternative may stand for positions of a table that are those in the frame instead of those at rest: strains relative to them
+/// are too small where they are positive and too large where they are negative, as of a material that contracts more along one axis.
+fn may_hold_places_in_frame(alternative: &Alternative, understood: &Understood) -> bool {
+    let is_of_table = !understood.columns.is_empty();
+    matches!(alternative, Alternative::Direction) && is_of_table && !understood.taken_to_rest
 }
 
 /// The edge gap to state instead, where an alternative moves the outline.
@@ -249,4 +258,36 @@ pub fn json(estimate: &FieldEstimate) -> Value {
         "worst": worst.map(|worst| json!({ "place_mm": worst.position, "misfit_mm": worst.misfit })),
         "stated_noise_is_off_by": estimate.noise_ratio,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::markers::ColumnTaken;
+
+    #[test]
+    fn a_stiffness_by_direction_may_be_positions_in_the_frame_of_a_table() {
+        let of_table = |taken_to_rest: bool| Understood {
+            columns: vec![ColumnTaken {
+                holds: "x",
+                head: "x [mm]".to_owned(),
+                unit: Some(1.0),
+                unit_source: "the file",
+            }],
+            taken_to_rest,
+            ..Understood::of("columns")
+        };
+        for (alternative, understood, expected) in [
+            (Alternative::Direction, of_table(false), true),
+            (Alternative::Law, of_table(false), false),
+            (Alternative::Direction, of_table(true), false),
+            (Alternative::Direction, Understood::of("positions"), false),
+        ] {
+            assert_eq!(
+                may_hold_places_in_frame(&alternative, &understood),
+                expected,
+                "{alternative:?}"
+            );
+        }
+    }
 }
