@@ -25,7 +25,9 @@ use crate::statistics::extremes;
 use band::reach;
 use joint::{Joint, JointEquations, State};
 use penalty::PenalisedFit;
-use smoothing::{FEWEST_IN_MOTION, SignalSpline, SplineValues, nearest, smooth, wanted_parts};
+use smoothing::{
+    FEWEST_IN_MOTION, FINER, SignalSpline, SplineValues, nearest, smooth, wanted_parts,
+};
 
 mod band;
 mod basis;
@@ -147,7 +149,7 @@ fn begin<'a>(
     let wanted = wanted_parts(extension, force).min(times.len() / FEWEST_IN_MOTION);
     let mut intervals = wanted;
     let (spline, motion) = loop {
-        match nearest(times, &recording.extension, intervals, 5) {
+        match nearest(times, &recording.extension, (intervals, FINER), 5) {
             Some(fitted) => break fitted,
             None if intervals > 1 => intervals -= 1 + intervals / 9,
             None => return None,

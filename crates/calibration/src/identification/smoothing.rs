@@ -12,10 +12,10 @@ const FEWEST: usize = 4;
 /// Parts of the motion for each part that cross-validation asks for in either signal alone: two derivatives of the
 /// motion enter, and where they are not resolved they cause a bias. Finer parts cost little, because the equation of
 /// motion couples them.
-const FINER: usize = 4;
+pub const FINER: usize = 4;
 
 /// Parts of a spline that an interval between two instants may span: with more empty parts a spline is hardly determined, and oscillates
-/// there. A longer interval is a gap.
+/// there. An interval that spans more of the parts that the signals ask for is a gap.
 const BRIDGED: f64 = 1.5;
 
 /// Least number of instants for each part of the motion; both signals count at each instant.
@@ -59,19 +59,26 @@ struct Piece {
 }
 
 impl PiecewiseSpline {
-    /// Parts as long as `intervals` equal ones of the time without gaps; `None` where too few instants lie between two gaps.
-    pub fn new(times: &[f64], intervals: usize, degree: usize) -> Option<Self> {
+    /// Parts as long as `intervals` equal ones of the time without gaps, which are `finer` times as many as the signals ask for; longer
+    /// where instants lie farther apart. `None` where too few instants lie between two gaps.
+    pub fn new(times: &[f64], intervals: usize, finer: usize, degree: usize) -> Option<Self> {
+        let bridged = BRIDGED * finer as f64;
         let with_gaps = (times[times.len() - 1] - times[0]) / intervals as f64;
-        let steps = times.windows(2).map(|pair| pair[1] - pair[0]);
-        let recorded: f64 = steps.filter(|step| *step <= BRIDGED * with_gaps).sum();
+        let steps = |times: &[f64]| {
+            let steps = times.windows(2).map(|pair| pair[1] - pair[0]);
+            steps.collect::<Vec<f64>>()
+        };
+        let recorded = steps(times).into_iter();
+        let recorded: f64 = recorded.filter(|step| *step <= bridged * with_gaps).sum();
         let part = recorded / intervals as f64;
         let mut pieces = Vec::new();
         let (mut instant, mut first) = (0, 0);
-        for run in times.chunk_by(|before, after| after - before <= BRIDGED * part) {
+        for run in times.chunk_by(|before, after| after - before <= bridged * part) {
             if run.len() < FEWEST_IN_MOTION * (degree + 1) {
                 return None;
             }
             let range = [run[0], run[run.len() - 1]];
+            let part = part.max(largest(&steps(run)) / BRIDGED);
             let parts = ((range[1] - range[0]) / part).round() as usize;
             let parts = parts.clamp(1, run.len() / FEWEST_IN_MOTION);
             let spline = BSpline::new(range, parts, degree, Ends::Uniform);
@@ -171,15 +178,14 @@ impl BandMatrix {
     }
 }
 
-/// The spline with parts as long as `intervals` equal ones of the time without gaps, and its coefficients nearest to `signal`; `None` where
-/// the instants do not determine it.
+/// The spline of [`PiecewiseSpline::new`], and its coefficients nearest to `signal`; `None` where the instants do not determine it.
 pub fn nearest(
     times: &[f64],
     signal: &[f64],
-    intervals: usize,
+    (intervals, finer): (usize, usize),
     degree: usize,
 ) -> Option<(PiecewiseSpline, Vec<f64>)> {
-    let spline = PiecewiseSpline::new(times, intervals, degree)?;
+    let spline = PiecewiseSpline::new(times, intervals, finer, degree)?;
     let sampled = SplineValues::new(&spline, times, 0);
     let mut matrix = BandMatrix::new(spline.count()).ok()?;
     let mut right = vec![0.0; spline.count()];
@@ -200,7 +206,7 @@ pub fn smooth(times: &[f64], signal: &[f64], degree: usize) -> Option<SignalSpli
     let mut best: Option<(f64, usize, f64)> = None;
     let (mut intervals, most) = (2, times.len() / FEWEST);
     while intervals <= most {
-        if let Some((spline, coefficients)) = nearest(times, signal, intervals, degree) {
+        if let Some((spline, coefficients)) = nearest(times, signal, (intervals, 1), degree) {
             let sampled = SplineValues::new(&spline, times, 0);
             let rows = signal.iter().enumerate();
             let squares = rows.map(|(i, y)| (y - sampled.value(i, &coefficients)).powi(2));
@@ -268,7 +274,7 @@ mod tests {
             let times: Vec<f64> = moving.iter().map(later).collect();
             let actual = smooth(&times, &signal, 5).unwrap();
             assert!((actual.noise / 0.05 - 1.0).abs() < 0.08, "{actual:?}");
-            let (spline, coefficients) = nearest(&times, &signal, 60, 5).unwrap();
+            let (spline, coefficients) = nearest(&times, &signal, (60, 1), 5).unwrap();
             assert_eq!(spline.runs(), [0..300, 300..720]);
             let sampled = SplineValues::new(&spline, &times, 1);
             for (i, t) in moving.iter().enumerate().skip(10).step_by(40) {
@@ -279,7 +285,7 @@ mod tests {
         // Too few instants lie between two gaps for a motion to be known there.
         let mut lonely = moving;
         lonely.retain(|t| !(3.85..4.5).contains(t));
-        assert!(PiecewiseSpline::new(&lonely, 60, 5).is_none());
-        assert!(PiecewiseSpline::new(&lonely, 5, 5).is_some());
+        assert!(PiecewiseSpline::new(&lonely, 60, 1, 5).is_none());
+        assert!(PiecewiseSpline::new(&lonely, 5, 1, 5).is_some());
     }
 }

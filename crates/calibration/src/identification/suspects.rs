@@ -169,7 +169,8 @@ impl Examination<'_> {
     /// lag too small.
     fn rates(&self, force: &[f64]) -> Vec<f64> {
         let times = &self.joint.recording.times;
-        let Some((spline, coefficients)) = nearest(times, force, self.parts_of_force, 3) else {
+        let Some((spline, coefficients)) = nearest(times, force, (self.parts_of_force, 1), 3)
+        else {
             return vec![0.0; times.len()];
         };
         let rates = SplineValues::new(&spline, times, 1);
