@@ -26,7 +26,7 @@ use band::reach;
 use joint::{Joint, JointEquations, State};
 use penalty::PenalisedFit;
 use smoothing::{
-    FEWEST_IN_MOTION, FINER, SignalSpline, SplineValues, nearest, smooth, wanted_parts,
+    FEWEST_IN_MOTION, LONGER, SignalSpline, SplineValues, nearest, smooth, wanted_parts,
 };
 
 mod band;
@@ -149,7 +149,7 @@ fn begin<'a>(
     let wanted = wanted_parts(extension, force).min(times.len() / FEWEST_IN_MOTION);
     let mut intervals = wanted;
     let (spline, motion) = loop {
-        match nearest(times, &recording.extension, (intervals, FINER), 5) {
+        match nearest(times, &recording.extension, (intervals, LONGER), 5) {
             Some(fitted) => break fitted,
             None if intervals > 1 => intervals -= 1 + intervals / 9,
             None => return None,
@@ -175,7 +175,7 @@ fn begin<'a>(
     let joint = Joint {
         recording,
         runs: spline.runs(),
-        is_bridged: 2 * intervals < wanted,
+        is_bridged: LONGER * intervals < wanted,
         orders,
         noise,
         functions,

@@ -12,11 +12,14 @@ const FEWEST: usize = 4;
 /// Parts of the motion for each part that cross-validation asks for in either signal alone: two derivatives of the
 /// motion enter, and where they are not resolved they cause a bias. Finer parts cost little, because the equation of
 /// motion couples them.
-pub const FINER: usize = 4;
+const FINER: usize = 4;
 
 /// Parts of a spline that an interval between two instants may span: with more empty parts a spline is hardly determined, and oscillates
-/// there. An interval that spans more of the parts that the signals ask for is a gap.
+/// there.
 const BRIDGED: f64 = 1.5;
+
+/// Parts of the motion may become so many times as long where instants lie apart; an interval that asks for longer ones is a gap.
+pub const LONGER: usize = 2;
 
 /// Least number of instants for each part of the motion; both signals count at each instant.
 pub const FEWEST_IN_MOTION: usize = 2;
@@ -59,10 +62,10 @@ struct Piece {
 }
 
 impl PiecewiseSpline {
-    /// Parts as long as `intervals` equal ones of the time without gaps, which are `finer` times as many as the signals ask for; longer
-    /// where instants lie farther apart. `None` where too few instants lie between two gaps.
-    pub fn new(times: &[f64], intervals: usize, finer: usize, degree: usize) -> Option<Self> {
-        let bridged = BRIDGED * finer as f64;
+    /// Parts as long as `intervals` equal ones of the time without gaps, or up to `longer` times as long in a run whose instants lie apart.
+    /// `None` where too few instants lie between two gaps.
+    pub fn new(times: &[f64], intervals: usize, longer: usize, degree: usize) -> Option<Self> {
+        let bridged = BRIDGED * longer as f64;
         let with_gaps = (times[times.len() - 1] - times[0]) / intervals as f64;
         let steps = |times: &[f64]| {
             let steps = times.windows(2).map(|pair| pair[1] - pair[0]);
@@ -182,10 +185,10 @@ impl BandMatrix {
 pub fn nearest(
     times: &[f64],
     signal: &[f64],
-    (intervals, finer): (usize, usize),
+    (intervals, longer): (usize, usize),
     degree: usize,
 ) -> Option<(PiecewiseSpline, Vec<f64>)> {
-    let spline = PiecewiseSpline::new(times, intervals, finer, degree)?;
+    let spline = PiecewiseSpline::new(times, intervals, longer, degree)?;
     let sampled = SplineValues::new(&spline, times, 0);
     let mut matrix = BandMatrix::new(spline.count()).ok()?;
     let mut right = vec![0.0; spline.count()];
