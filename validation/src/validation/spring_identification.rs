@@ -181,7 +181,8 @@ fn explanation(settings: &Settings) -> Block {
         "Force and extension have white noise of {} % of their root mean square; the seeds are {} to {}. A band applies to \
          both functions at all places simultaneously, an interval to one place. At the ends of the range the motion \
          reverses: its velocity vanishes there, the recording does not determine D(·), and individual trials deviate \
-         strongly, which the means in the table show. The median error is therefore checked.",
+         strongly, which the means in the table show. The median error is therefore checked. Standard errors are means over the \
+         recordings that have them, which are those that are explained.",
         limit(100.0 * settings.sample.noise),
         settings.sample.seed,
         settings.sample.seed + settings.trials as u64 - 1
@@ -191,7 +192,8 @@ fn explanation(settings: &Settings) -> Block {
 fn error_table(trials: &[Trial], positions: &[f64]) -> Block {
     const ROWS: usize = 10;
     let mean = |index: usize, position: usize, of: fn(&Place) -> f64| {
-        mean(trials.iter().map(|trial| of(&trial[index][position])))
+        let values = trials.iter().map(|trial| of(&trial[index][position]));
+        mean(values.filter(|value| value.is_finite()))
     };
     let cells = |index: usize, position: usize| {
         [

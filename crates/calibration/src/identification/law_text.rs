@@ -85,7 +85,7 @@ impl FunctionText<'_> {
                 (estimate.value * factor, estimate.standard_error * factor)
             })
             .unzip();
-        let errors = self.quantities(&errors);
+        let errors = self.errors(&errors);
         match values[..] {
             [value] => format!(
                 "kind = \"constant\"\nvalue = {} # standard error {errors}\n",
@@ -120,8 +120,17 @@ impl FunctionText<'_> {
             "kind = \"table\"\nat = [{}]\nvalues = {}\n{zero}# standard errors: {}\n",
             arguments.join(", "),
             self.quantities(&values),
-            self.quantities(&errors)
+            self.errors(&errors)
         )
+    }
+
+    /// Standard errors, which a recording that is not explained has not.
+    fn errors(&self, values: &[f64]) -> String {
+        if values.iter().all(|value| value.is_finite()) {
+            self.quantities(values)
+        } else {
+            "none, because the recording is not explained".to_owned()
+        }
     }
 
     fn quantity(&self, value: f64) -> String {

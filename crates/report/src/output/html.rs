@@ -144,7 +144,7 @@ fn class(cell: &str) -> &'static str {
         _ if verdict("pass") => "pass",
         _ if verdict("FAIL") => "fail",
         _ if verdict("cannot be judged") => "open",
-        number if number.parse::<f64>().is_ok() => "number",
+        number if number == "–" || number.parse::<f64>().is_ok() => "number",
         long if long.chars().count() > 28 => "long",
         _ => "",
     }
