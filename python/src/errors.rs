@@ -1,7 +1,7 @@
 //! The library's errors as Python's exceptions, which `gelbench._errors` defines.
 
 use gelbench::error::{Diagnostic, Error, Severity, SolveFault};
-use gelbench_base::error::suggestion;
+use gelbench_base::error::nearest;
 use pyo3::exceptions::{PyKeyboardInterrupt, PyRuntimeError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -98,7 +98,13 @@ pub fn choice<T: Copy>(what: &str, name: &str, names: &[(&str, T)]) -> Result<T,
     let entry = names.iter().find(|(known, _)| *known == name);
     entry.map(|(_, choice)| *choice).ok_or_else(|| {
         let known: Vec<_> = names.iter().map(|(known, _)| *known).collect();
-        let hint = suggestion(name, &known, "use one of");
+        let near =
+            nearest(name, known.iter().copied()).map(|near| format!("did you mean `{near}`? "));
+        let hint = format!(
+            "{}use one of {}",
+            near.unwrap_or_default(),
+            known.join(", ")
+        );
         input(format!("{what} `{name}` is not known"), hint)
     })
 }
