@@ -1,5 +1,6 @@
 //! Laws of the first two invariants.
 
+use std::marker::PhantomData;
 use std::sync::Arc;
 
 use pulp::{Arch, NullaryFnOnce};
@@ -32,7 +33,7 @@ impl<L: InvariantLaw> HyperelasticLaw for L {
             law: self,
             gradients,
             computed,
-            of: stress,
+            kind: PhantomData::<Stress>,
         })
     }
 
@@ -46,7 +47,7 @@ impl<L: InvariantLaw> HyperelasticLaw for L {
             law: self,
             gradients,
             computed,
-            of: response,
+            kind: PhantomData::<Response>,
         })
     }
 
@@ -149,30 +150,40 @@ impl<L: InvariantLaw> IsochoricLaw for L {
     }
 }
 
-#[inline(always)]
-fn stress(kinematics: &Kinematics, w: &EnergyDerivatives) -> [f64; 4] {
-    kinematics.stress(w).1.into()
+/// A result computed from the kinematics and derivatives at a point.
+trait Computed<const N: usize> {
+    /// The components of the result.
+    fn of(kinematics: &Kinematics, w: &EnergyDerivatives) -> [f64; N];
 }
 
-#[inline(always)]
-fn response(kinematics: &Kinematics, w: &EnergyDerivatives) -> [f64; COMPONENTS] {
-    kinematics.response(w).components()
+struct Stress;
+
+impl Computed<4> for Stress {
+    #[inline(always)]
+    fn of(kinematics: &Kinematics, w: &EnergyDerivatives) -> [f64; 4] {
+        kinematics.stress(w).1.into()
+    }
+}
+
+struct Response;
+
+impl Computed<COMPONENTS> for Response {
+    #[inline(always)]
+    fn of(kinematics: &Kinematics, w: &EnergyDerivatives) -> [f64; COMPONENTS] {
+        kinematics.response(w).components()
+    }
 }
 
 /// Straight-line code for each point: the compiler handles several points with one instruction, with the widest
 /// vectors that the machine has. No operation is fused with another, so that all machines give the same bits.
-struct PointLoop<'a, L, F, const N: usize> {
+struct PointLoop<'a, L, M, const N: usize> {
     law: &'a L,
     gradients: [&'a [f64]; 4],
     computed: [&'a mut [f64]; N],
-    /// The components computed from the kinematics and derivatives at a point.
-    of: F,
+    kind: PhantomData<M>,
 }
 
-impl<L: InvariantLaw, F, const N: usize> NullaryFnOnce for PointLoop<'_, L, F, N>
-where
-    F: Fn(&Kinematics, &EnergyDerivatives) -> [f64; N],
-{
+impl<L: InvariantLaw, M: Computed<N>, const N: usize> NullaryFnOnce for PointLoop<'_, L, M, N> {
     type Output = bool;
 
     #[inline(always)]
@@ -191,7 +202,7 @@ where
             for lane in 0..LANES {
                 let h = PlaneTensor::new(h11[lane], h12[lane], h21[lane], h22[lane]);
                 let kinematics = Kinematics::unchecked(&h);
-                let computed = (self.of)(&kinematics, &self.law.evaluate(kinematics.invariants));
+                let computed = M::of(&kinematics, &self.law.evaluate(kinematics.invariants));
                 for (component, value) in block.iter_mut().zip(computed) {
                     component[lane] = value;
                 }

@@ -1,5 +1,7 @@
 //! Stresses and tangents of a sheet at many points at once.
 
+use std::marker::PhantomData;
+
 use pulp::{Arch, NullaryFnOnce};
 
 use super::{BodyLaw, BodySheet, BodyStretches};
@@ -10,7 +12,7 @@ use crate::material::sheet::{COMPONENTS, Kinematics, PlaneTensor};
 impl<L: BodyLaw> BodySheet<L> {
     /// As [`HyperelasticLaw::stresses`](crate::material::HyperelasticLaw::stresses).
     pub(super) fn stresses_at(&self, gradients: [&[f64]; 4], computed: [&mut [f64]; 4]) -> bool {
-        self.each(gradients, computed, stress)
+        self.each::<Stress, 4>(gradients, computed)
     }
 
     /// As [`HyperelasticLaw::responses`](crate::material::HyperelasticLaw::responses).
@@ -19,20 +21,19 @@ impl<L: BodyLaw> BodySheet<L> {
         gradients: [&[f64]; 4],
         computed: [&mut [f64]; COMPONENTS],
     ) -> bool {
-        self.each(gradients, computed, response)
+        self.each::<Response, COMPONENTS>(gradients, computed)
     }
 
-    fn each<const N: usize>(
+    fn each<M: Computed<N>, const N: usize>(
         &self,
         gradients: [&[f64]; 4],
         computed: [&mut [f64]; N],
-        of: impl Fn(&Measures, &Derivatives) -> [f64; N],
     ) -> bool {
         with_avx2(PointLoop {
             sheet: self,
             gradients,
             computed,
-            of,
+            kind: PhantomData::<M>,
         })
     }
 }
@@ -113,32 +114,42 @@ impl<S: Copy> Lanes<S> {
     }
 }
 
-#[inline(always)]
-fn stress(measures: &Measures, w: &Derivatives) -> [f64; 4] {
-    measures.stress(w).into()
+/// A result computed from the measures and derivatives at a point.
+trait Computed<const N: usize> {
+    /// The components of the result.
+    fn of(measures: &Measures, w: &Derivatives) -> [f64; N];
 }
 
-#[inline(always)]
-fn response(measures: &Measures, w: &Derivatives) -> [f64; COMPONENTS] {
-    measures.response(w).components()
+struct Stress;
+
+impl Computed<4> for Stress {
+    #[inline(always)]
+    fn of(measures: &Measures, w: &Derivatives) -> [f64; 4] {
+        measures.stress(w).into()
+    }
+}
+
+struct Response;
+
+impl Computed<COMPONENTS> for Response {
+    #[inline(always)]
+    fn of(measures: &Measures, w: &Derivatives) -> [f64; COMPONENTS] {
+        measures.response(w).components()
+    }
 }
 
 /// Computes the result for every point of a list; `false` where one is turned inside out.
 ///
 /// Straight-line code for each point, as for laws that keep their volume: no operation is fused with another, so that all
 /// machines give the same bits.
-struct PointLoop<'a, L, F, const N: usize> {
+struct PointLoop<'a, L, M, const N: usize> {
     sheet: &'a BodySheet<L>,
     gradients: [&'a [f64]; 4],
     computed: [&'a mut [f64]; N],
-    /// The components computed from the measures and derivatives at a point.
-    of: F,
+    kind: PhantomData<M>,
 }
 
-impl<L: BodyLaw, F, const N: usize> NullaryFnOnce for PointLoop<'_, L, F, N>
-where
-    F: Fn(&Measures, &Derivatives) -> [f64; N],
-{
+impl<L: BodyLaw, M: Computed<N>, const N: usize> NullaryFnOnce for PointLoop<'_, L, M, N> {
     type Output = bool;
 
     #[inline(always)]
@@ -155,7 +166,7 @@ where
             let mut block = [[0.0; LANES]; N];
             for lane in 0..LANES {
                 let (measures, w) = lanes.point(sheet, lane);
-                for (component, value) in block.iter_mut().zip((self.of)(&measures, &w)) {
+                for (component, value) in block.iter_mut().zip(M::of(&measures, &w)) {
                     component[lane] = value;
                 }
             }
