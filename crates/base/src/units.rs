@@ -158,11 +158,10 @@ pub fn is_known(unit: &str) -> bool {
 
 /// The first unit of length whose size in mm meets a condition.
 pub fn length_unit(is_it: impl Fn(f64) -> bool) -> Option<&'static str> {
-    let mut lengths = UNITS
+    let unit = UNITS
         .iter()
-        .filter(|(_, dimension, _)| *dimension == Dimension::Length);
-    let found = lengths.find(|(.., millimetres)| is_it(*millimetres));
-    found.map(|(symbol, ..)| *symbol)
+        .find(|(_, dimension, size)| *dimension == Dimension::Length && is_it(*size));
+    unit.map(|(symbol, ..)| *symbol)
 }
 
 /// Length in bytes of the decimal number at the beginning of `text`.

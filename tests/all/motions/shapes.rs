@@ -132,10 +132,10 @@ fn a_slender_strip_in_tension_vibrates_as_a_stiff_string() {
     let checks = report["requirements"].as_array().unwrap();
     let name = "mass-spring: displacement since the start over all instants";
     let check = checks.iter().find(|check| check["quantity"] == name);
-    let told = check.unwrap()["computed"].as_f64().unwrap();
+    let reported = check.unwrap()["computed"].as_f64().unwrap();
     assert!(
-        told > 0.5 * in_the_middle && told < 2.0 * in_the_middle,
-        "{told} % {in_the_middle} %"
+        reported > 0.5 * in_the_middle && reported < 2.0 * in_the_middle,
+        "{reported} % {in_the_middle} %"
     );
 }
 

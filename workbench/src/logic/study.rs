@@ -165,8 +165,8 @@ struct NamedCard {
 /// The study with a shipped card in place of one that it names by its file, line by line as it was, and that one.
 fn with_known_card(text: &str, cards: &[CardFile]) -> Option<(String, CardFile)> {
     let card = toml::from_str::<Named>(text).ok()?.material.card;
-    let mut own = cards.iter().filter(|known| !known.is_shipped());
-    let known = own.find(|known| known.reference() == *card.get_ref())?;
+    let is_named = |file: &&CardFile| !file.is_shipped() && file.reference() == *card.get_ref();
+    let known = cards.iter().find(is_named)?;
     let mut study = text.to_owned();
     study.replace_range(card.span(), "\"neo-hooke\"");
     Some((study, known.clone()))

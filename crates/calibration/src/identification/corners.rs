@@ -184,20 +184,20 @@ mod tests {
         let instants = (0..1200).filter(|i| ![100, 217, 400, 533, 700, 911, 912].contains(i));
         let times: Vec<f64> = instants.map(|i| f64::from(i) / 120.0).collect();
         let motion: Vec<f64> = times.iter().map(|t| (TAU * t).sin()).collect();
-        let whole = 0..times.len();
-        assert_eq!(corners(&times, &motion, slice::from_ref(&whole)), None);
+        let all = 0..times.len();
+        assert_eq!(corners(&times, &motion, slice::from_ref(&all)), None);
     }
 
     /// Wrong values are spikes; steps of dry friction, corners, bursts and noise are none.
     #[test]
     fn spikes_are_values_far_from_those_on_both_sides() {
         let times: Vec<f64> = (0..1200).map(|i| f64::from(i) / 120.0).collect();
-        let whole = 0..times.len();
-        let found = |value: &dyn Fn(f64) -> f64, noise: f64, wrong: &[usize]| {
+        let all = 0..times.len();
+        let spikes_of = |value: &dyn Fn(f64) -> f64, noise: f64, wrong: &[usize]| {
             let mut normal = normal_numbers(5);
             let mut signal: Vec<f64> = times.iter().map(|t| value(*t) + noise * normal()).collect();
             wrong.iter().for_each(|i| signal[*i] += 0.5);
-            spikes(&times, &signal, slice::from_ref(&whole))
+            spikes(&times, &signal, slice::from_ref(&all))
         };
         let smooth = |t: f64| (TAU * t).sin() + 0.5 * (3.1 * TAU * t).sin();
         let friction = |t: f64| smooth(t) + 0.8 * (TAU * t).cos().signum();
@@ -205,10 +205,10 @@ mod tests {
         let burst = |t: f64| (2.0 * TAU * t).sin() * (-0.5 * t).exp();
         for noise in [0.0, 1e-3, 0.02] {
             for value in [&smooth as &dyn Fn(f64) -> f64, &friction, &triangle, &burst] {
-                assert!(found(value, noise, &[]).is_empty(), "{noise}");
+                assert!(spikes_of(value, noise, &[]).is_empty(), "{noise}");
             }
             let wrong = [40, 401, 402, 777];
-            assert_eq!(found(&smooth, noise, &wrong), wrong, "{noise}");
+            assert_eq!(spikes_of(&smooth, noise, &wrong), wrong, "{noise}");
         }
     }
 }

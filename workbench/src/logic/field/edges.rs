@@ -216,8 +216,8 @@ mod tests {
             (" ", "the edge right is known"),
         ] {
             let wrong = Edge::Known([x.into(), String::new()]);
-            let told = wrong.condition("right").unwrap_err().to_string();
-            assert!(told.contains(fault), "{told}");
+            let message = wrong.condition("right").unwrap_err().to_string();
+            assert!(message.contains(fault), "{message}");
         }
     }
 }

@@ -251,9 +251,9 @@ impl<'a> Search<'a> {
                 share *= 0.5;
                 continue;
             };
-            let left = missing(&next).norm() / far.norm();
-            self.markers =
-                (left < 1.0 - SERVES * share).then(|| markers.updated(step, far - missing(&next)));
+            let remaining = missing(&next).norm() / far.norm();
+            self.markers = (remaining < 1.0 - SERVES * share)
+                .then(|| markers.updated(step, far - missing(&next)));
             (state, share) = (next, (2.0 * share).min(1.0));
         }
         let missing = missing(&state).amax();

@@ -189,8 +189,8 @@ fn the_bars_of_an_anisotropic_sheet_are_found_by_its_markers() {
         .iter()
         .map(|state| by_markers.middle(&state.field))
         .collect();
-    let found = by_markers.states(&laws, &strains, &[]).unwrap().concat();
-    for (state, bars) in found.iter().zip(&bars) {
+    let located = by_markers.states(&laws, &strains, &[]).unwrap().concat();
+    for (state, bars) in located.iter().zip(&bars) {
         for axis in [0, 1] {
             let off = state.bars[axis] - bars[axis];
             assert!(off.abs() < 1e-5, "{bars:?} {:?}", state.bars);

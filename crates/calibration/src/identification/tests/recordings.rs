@@ -244,12 +244,12 @@ fn a_gap_leaves_the_functions_as_they_are() {
         noise: 0.02,
         ..Sample::default()
     };
-    let whole = sample.recording();
+    let complete = sample.recording();
     for missing in [300..360, 300..400] {
-        let kept: Vec<usize> = (0..whole.times.len())
+        let kept: Vec<usize> = (0..complete.times.len())
             .filter(|i| !missing.contains(i))
             .collect();
-        let actual = identified(&part(&whole, &kept));
+        let actual = identified(&part(&complete, &kept));
         assert!(
             actual.is_explained() && actual.misfit < 1.2,
             "{:?}",
@@ -261,10 +261,10 @@ fn a_gap_leaves_the_functions_as_they_are() {
         }
     }
     // Five rows between two gaps say nothing of rates.
-    let lonely: Vec<usize> = (0..whole.times.len())
+    let lonely: Vec<usize> = (0..complete.times.len())
         .filter(|i| !(300..320).contains(i) && !(325..345).contains(i))
         .collect();
-    let actual = identified(&part(&whole, &lonely));
+    let actual = identified(&part(&complete, &lonely));
     let mut doubts = actual.verdict.doubts.iter();
     assert!(doubts.any(|doubt| doubt.contains("between neighbouring gaps")));
 }
