@@ -173,13 +173,16 @@ fn a_comparison_says_what_a_run_says_and_which_part_is_a_motion_of_the_whole_bod
     assert!((0.9..1.2).contains(&ratio), "{ratio}");
 
     let moved = import_field(&position.join(field), 1.0, None, 1.0).unwrap();
-    let nodes = moved.mesh.nodes.iter().zip(moved.displacement.chunks(2));
-    let rows = nodes.map(|([x, y], u)| format!("{x},{y},{},{}\n", u[0] + 1.5, u[1] - 0.7));
-    let table = format!(
-        "X [mm],Y [mm],ux [mm],uy [mm]\n{}",
-        rows.collect::<String>()
-    );
-    fs::write(position.join("moved.csv"), table).unwrap();
+    let write = |name: &str, changed: fn(&[f64]) -> [f64; 2]| {
+        let nodes = moved.mesh.nodes.iter().zip(moved.displacement.chunks(2));
+        let rows = nodes.map(|([x, y], u)| {
+            let [ux, uy] = changed(u);
+            format!("{x},{y},{ux},{uy}\n")
+        });
+        let head = "X [mm],Y [mm],ux [mm],uy [mm]\n".to_owned();
+        fs::write(position.join(name), head + &rows.collect::<String>()).unwrap();
+    };
+    write("moved.csv", |u| [u[0] + 1.5, u[1] - 0.7]);
     let compared = json(&["compare", "small.toml", "moved.csv", "--json"], 1);
     let message = compared["doubts"][0].as_str().unwrap();
     assert!(
@@ -191,13 +194,7 @@ fn a_comparison_says_what_a_run_says_and_which_part_is_a_motion_of_the_whole_bod
         "{message}"
     );
 
-    let nodes = moved.mesh.nodes.iter().zip(moved.displacement.chunks(2));
-    let rows = nodes.map(|([x, y], u)| format!("{x},{y},{},{}\n", u[1], u[0]));
-    let table = format!(
-        "X [mm],Y [mm],ux [mm],uy [mm]\n{}",
-        rows.collect::<String>()
-    );
-    fs::write(position.join("exchanged.csv"), table).unwrap();
+    write("exchanged.csv", |u| [u[1], u[0]]);
     let compared = json(&["compare", "small.toml", "exchanged.csv", "--json"], 1);
     let message = compared["doubts"][0].as_str().unwrap();
     assert!(message.contains("with x and y exchanged"), "{message}");

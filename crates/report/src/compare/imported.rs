@@ -316,10 +316,8 @@ impl Sites {
         let factor = product(&computed, &self.expected) / product(&self.expected, &self.expected);
         let scaled: Vec<f64> = self.expected.iter().map(|u| factor * u).collect();
         let (shift, shifted) = self.shifted_to(&computed);
-        let remaining = Mistake::ALL.map(|mistake| (percent_from(&self.without(mistake)), mistake));
-        let nearest = remaining
-            .into_iter()
-            .min_by(|(a, _), (b, _)| a.total_cmp(b));
+        let after = Mistake::ALL.map(|mistake| (percent_from(&self.without(mistake)), mistake));
+        let nearest = after.into_iter().min_by(|(a, _), (b, _)| a.total_cmp(b));
         let mistake = nearest.filter(|(rest, _)| percent > SMALL && explains_most(percent, *rest));
         Ok(Difference {
             percent,
