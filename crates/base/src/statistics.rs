@@ -118,6 +118,17 @@ impl Estimate {
         self
     }
 
+    /// The estimate of a value that falls as much as another may be larger than assumed, by a share; one without uncertainty stays.
+    #[must_use]
+    pub fn lower_by(self, growth: f64) -> Self {
+        let [low, high] = self.interval;
+        if low < high {
+            self.widened(self.value / (1.0 + growth) - self.value)
+        } else {
+            self
+        }
+    }
+
     /// A value without uncertainty.
     pub fn exact(value: f64) -> Self {
         Self::new(value, 0.0, 0.0)
@@ -266,6 +277,13 @@ mod tests {
     fn no_probability_is_told_as_zero() {
         assert_eq!(small_probability(3.4e-12), "3e-12");
         assert_eq!(small_probability(0.0), "less than 2e-308");
+    }
+
+    #[test]
+    fn only_intervals_become_wider() {
+        let lower = Estimate::new(2.0, 0.1, 2.0).lower_by(0.25);
+        assert!((lower.interval[0] - 1.4).abs() < 1e-12 && lower.interval[1] == 2.2);
+        assert_eq!(Estimate::exact(2.0).lower_by(0.25), Estimate::exact(2.0));
     }
 
     /// Tables of Student, F and χ² at their usual levels.

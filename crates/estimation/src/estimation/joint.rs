@@ -35,7 +35,7 @@ use crate::statistics::{normal_reach, student_reach};
 use descent::{Course, Descent};
 use direction::directions;
 use estimate::Step;
-use frame::{CrossPrediction, Frame, FrameInformation};
+use frame::{Frame, FrameInformation};
 
 mod descent;
 mod direction;
@@ -133,19 +133,14 @@ fn outcome(
     let frames = frame_outcomes(descent, &course, &parts, &inverse, settings.groups, watch)?;
     let shares = frames.iter().zip(&parts);
     let growth: f64 = shares.map(|(frame, part)| frame.share * part.growth).sum();
-    let intervals = ends.intervals(settings.profiles).into_iter();
-    let parameters = intervals
-        .zip(law.parameters())
-        .map(|(estimate, parameter)| {
-            // A modulus falls by as much as forces grow.
-            if parameter.unit() == "MPa" {
-                estimate.widened(estimate.value / (1.0 + growth) - estimate.value)
-            } else {
-                estimate
-            }
-        });
+    let mut parameters = ends.intervals(settings.profiles);
+    for (estimate, parameter) in parameters.iter_mut().zip(law.parameters()) {
+        if parameter.unit() == "MPa" {
+            *estimate = estimate.lower_by(growth);
+        }
+    }
     Ok(JointEstimate {
-        parameters: parameters.collect(),
+        parameters,
         law,
         holds_mesh_error: mesh.is_some(),
         frames,
@@ -238,13 +233,13 @@ fn frame_outcomes(
             let frame = descent.frames[index];
             let prediction = frame.cross_predict(&law, Some(&course.states[index]))?;
             let part = &parts[index];
-            let share = part.information.dot(inverse) / course.values.len() as f64;
-            Ok(frame_outcome(
-                frame,
-                part,
-                prediction,
-                (share, others.is_some()),
-            ))
+            Ok(FrameOutcome {
+                share: part.information.dot(inverse) / course.values.len() as f64,
+                forces: force_predictions(frame, prediction.forces, others.is_some()),
+                residual_rms: prediction.residual_rms,
+                deviance: part.deviance,
+                independent: part.independent,
+            })
         };
         let prediction = members.into_par_iter().map(outcome);
         outcomes.extend(prediction.collect::<Result<Vec<FrameOutcome>, Error>>()?);
@@ -252,22 +247,15 @@ fn frame_outcomes(
     Ok(outcomes)
 }
 
-fn frame_outcome(
+fn force_predictions(
     frame: &Frame,
-    part: &FrameInformation,
-    prediction: CrossPrediction,
-    (share, is_predicted): (f64, bool),
-) -> FrameOutcome {
-    let forces = frame.measured().iter().zip(prediction.forces);
+    predicted: Vec<f64>,
+    is_predicted: bool,
+) -> Vec<ForcePrediction> {
+    let forces = frame.measured().iter().zip(predicted);
     let force = |(measured, predicted): (&MeasuredForce, f64)| ForcePrediction {
         measured: measured.clone(),
         predicted: is_predicted.then_some(predicted),
     };
-    FrameOutcome {
-        share,
-        forces: forces.map(force).collect(),
-        residual_rms: prediction.residual_rms,
-        deviance: part.deviance,
-        independent: part.independent,
-    }
+    forces.map(force).collect()
 }

@@ -182,13 +182,13 @@ fn judged(frames: &[JointFrame], settings: &Settings) -> Result<Trial, Error> {
     let other = find(wrong, false)?;
     let error = |actual: &JointEstimate| 100.0 * actual.prediction_error().unwrap_or(f64::INFINITY);
     let parameters = actual.parameters.iter().zip(&truth);
-    let criteria = JointEstimate::information_criteria(&[&actual, &other]);
+    let criterion = |one: &JointEstimate| one.information_criterion(&[&actual, &other]);
     Ok(Trial {
         held: parameters
             .map(|(actual, truth)| actual.holds(*truth))
             .collect(),
         predicted: [error(&actual), error(&other)],
-        is_right_first: error(&actual) < error(&other) && criteria[0] < criteria[1],
+        is_right_first: error(&actual) < error(&other) && criterion(&actual) < criterion(&other),
         common: actual.common,
     })
 }

@@ -119,26 +119,23 @@ pub struct ForcePrediction {
 }
 
 impl JointEstimate {
-    /// The corrected Akaike information criterion of laws with the same frames; infinite where there are too few independent values.
+    /// The corrected Akaike information criterion, beside that of other laws with the same frames; infinite where there are too few
+    /// independent values.
     ///
-    /// Each law's residuals may show another number of independent values. A likelihood of another number of values cannot be compared, so
+    /// Each law's residuals may show another number of independent values. Likelihoods of different numbers of values cannot be compared, so
     /// that all laws have the least number of each frame.
-    pub fn information_criteria(estimates: &[&Self]) -> Vec<f64> {
-        let criterion = |estimate: &&Self| {
-            let measured = estimate.frames.iter().map(|frame| frame.forces.len());
-            let mut independent = measured.sum::<usize>() as f64;
-            let mut deviance = estimate.force_scatter.misfit;
-            for (k, frame) in estimate.frames.iter().enumerate() {
-                let counts = estimates.iter().filter_map(|one| one.frames.get(k));
-                let least = counts
-                    .map(|one| one.independent)
-                    .fold(f64::INFINITY, f64::min);
-                independent += least;
-                deviance += least * frame.deviance;
-            }
-            corrected_akaike_criterion(deviance, estimate.effective_parameters, independent)
-        };
-        estimates.iter().map(criterion).collect()
+    pub fn information_criterion(&self, laws: &[&Self]) -> f64 {
+        let mut independent = 0.0;
+        let mut deviance = self.force_scatter.misfit;
+        for (k, frame) in self.frames.iter().enumerate() {
+            let others = laws.iter().filter_map(|law| law.frames.get(k));
+            let least = others
+                .map(|other| other.independent)
+                .fold(frame.independent, f64::min);
+            independent += least + frame.forces.len() as f64;
+            deviance += least * frame.deviance;
+        }
+        corrected_akaike_criterion(deviance, self.effective_parameters, independent)
     }
 
     /// Root mean square of the errors of predicted forces relative to that of the measured ones; `None` where none was predicted.

@@ -86,7 +86,7 @@ impl MarkerStudy {
         }
         for (_, unit, modulus) in &mut estimate.parameters {
             if *unit == "MPa" {
-                *modulus = modulus.widened(modulus.value / (1.0 + growth) - modulus.value);
+                *modulus = modulus.lower_by(growth);
             }
         }
         estimate

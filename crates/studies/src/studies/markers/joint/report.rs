@@ -159,23 +159,24 @@ pub fn ranked(study: &JointStudy, joint: &JointResults) -> Vec<RankedLaw> {
     let all: Vec<Result<&JointEstimate, &Error>> =
         iter::once(Ok(&joint.estimate)).chain(others).collect();
     let estimates: Vec<_> = all.iter().filter_map(|estimate| estimate.ok()).collect();
-    let criteria = JointEstimate::information_criteria(&estimates);
-    let least = criteria.iter().copied().fold(f64::INFINITY, f64::min);
-    let mut criteria = criteria.into_iter();
-    let mut figures = |estimate: &JointEstimate| {
+    let criteria = estimates
+        .iter()
+        .map(|estimate| estimate.information_criterion(&estimates));
+    let least = criteria.fold(f64::INFINITY, f64::min);
+    let figures = |estimate: &JointEstimate| {
         let frames = estimate
             .frames
             .iter()
             .map(|frame| frame.residual_rms.powi(2));
         let square = frames.sum::<f64>() / estimate.frames.len() as f64;
         let error = estimate.prediction_error().unwrap_or(f64::NAN);
-        let above = criteria.next().map_or(f64::NAN, |one| one - least);
+        let above = estimate.information_criterion(&estimates) - least;
         [100.0 * error, square.sqrt(), above]
     };
     let row = |(card, estimate): (&Card, &Result<&JointEstimate, &Error>)| RankedLaw {
         name: card.name.clone(),
         parameters: estimate.map_or(0, |estimate| estimate.parameters.len()),
-        figures: estimate.ok().map(&mut figures),
+        figures: estimate.ok().map(figures),
         fault: estimate.err().map_or(String::new(), ToString::to_string),
     };
     let mut rows: Vec<RankedLaw> = study.cards.iter().zip(&all).map(row).collect();

@@ -168,7 +168,7 @@ fn problem(
         "forces": forces.collect::<Vec<_>>(),
         "specimens": verdicts.collect::<Vec<_>>(),
         "correlation_between_frames": estimate.common,
-        "aicc": (JointEstimate::information_criteria(&[estimate])[0]),
+        "aicc": estimate.information_criterion(&[]),
         "steps": estimate.steps,
     }))
 }
