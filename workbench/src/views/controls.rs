@@ -22,6 +22,7 @@ pub const COLUMN_MARGIN: Margin = Margin {
 /// Shows all controls; the changed scene, and whether a control is held.
 pub fn show(ui: &mut Ui, table: &Table) -> (Scene, bool) {
     let mut scene = table.scene().clone();
+    let before = (scene.grip, scene.size[0]);
     let mut held = false;
     let mut hold = |response: eframe::egui::Response| held |= response.dragged();
     ui.heading("Sheet");
@@ -32,6 +33,9 @@ pub fn show(ui: &mut Ui, table: &Table) -> (Scene, bool) {
     ui.add_space(6.0);
     ui.heading("Right grip");
     grip(ui, &mut scene, &mut hold);
+    if (scene.grip, scene.size[0]) != before {
+        scene.grip = within(scene.grip, &scene);
+    }
     ui.add_space(6.0);
     ui.heading("Shown");
     look(ui, &mut scene);
@@ -127,7 +131,7 @@ pub fn card(ui: &mut Ui, label: &str, chosen: &mut CardFile, user_cards: &[CardF
 }
 
 fn grip(ui: &mut Ui, scene: &mut Scene, hold: &mut Hold) {
-    let (before, length) = (scene.grip, scene.size[0]);
+    let length = scene.size[0];
     let mut stretch = 100.0 * scene.stretch();
     let slider = Slider::new(&mut stretch, -20.0..=150.0)
         .suffix(" %")
@@ -162,9 +166,6 @@ fn grip(ui: &mut Ui, scene: &mut Scene, hold: &mut Hold) {
     {
         scene.grip.displacement[1] = 0.0;
         scene.grip.angle = 0.0;
-    }
-    if scene.grip != before {
-        scene.grip = within(scene.grip, scene);
     }
 }
 

@@ -39,7 +39,7 @@ impl Table {
         }
         let elements = self
             .shown(Model::Elements)
-            .filter(|other| other.grip == shown.grip)?;
+            .filter(|other| other.grip.is_some() && other.grip == shown.grip)?;
         let expected = elements.solved.on_lattice.as_ref()?;
         let pairs = solved
             .displacement
