@@ -1,6 +1,7 @@
 //! The rows of files, and how they are gathered into frames of markers.
 
 use std::collections::{BTreeMap, HashMap};
+use std::f64::consts::FRAC_1_SQRT_2;
 use std::path::PathBuf;
 
 use super::frames::{Frame, Marker, MarkerSeries};
@@ -103,9 +104,10 @@ struct Gathering {
 
 impl Gathering {
     fn add(&mut self, row: Row) {
+        // An irrational offset keeps decimal numbers off the ends of what is rounded to one multiple.
         let key = row
             .position
-            .map(|x| ((x / self.rounding).round() + 0.0).to_bits());
+            .map(|x| ((x / self.rounding + FRAC_1_SQRT_2).round() + 0.0).to_bits());
         let next = self.by_position.len();
         let number = match row.name {
             Some(name) if self.named => name as usize,

@@ -192,7 +192,11 @@ fn mudic_gives_positions_in_the_frame() {
 #[test]
 fn positions_in_the_frame_are_those_of_the_same_markers_in_all_frames() {
     let head = "x [mm],y [mm],ux [mm],uy [mm]\n";
-    let texts = ["0.3,1,0.1,0\n1.1,1,0.1,0\n", "0.4,1,0.2,0\n1.2,1,0.2,0\n"];
+    // The third one lies between two of the multiples of 6.4e-8 mm to which positions of this field are rounded.
+    let texts = [
+        "0.3,1,0.1,0\n64.1,1,0.1,0\n1.1001,1,0.1,0\n",
+        "0.67,1,0.37,0\n64.37,1,0.37,0\n1.3701,1,0.37,0\n",
+    ];
     let [first, second] = texts.map(|rows| format!("{head}{rows}"));
     let reading = ReadSettings {
         deformed: Some(true),
@@ -204,8 +208,8 @@ fn positions_in_the_frame_are_those_of_the_same_markers_in_all_frames() {
         let markers = frame.markers.iter();
         markers.map(|marker| marker.number).collect::<Vec<_>>()
     });
-    assert_eq!(numbers.collect::<Vec<_>>(), [[0, 1], [0, 1]]);
-    assert_eq!(measured.series.positions().len(), 2);
+    assert_eq!(numbers.collect::<Vec<_>>(), [[0, 1, 2], [0, 1, 2]]);
+    assert_eq!(measured.series.positions().len(), 3);
 }
 
 #[test]
