@@ -283,6 +283,7 @@ impl Results {
             "times_s": times,
         })
     }
+
     /// Whether all requirements are met, no model ended early, and there is no doubt.
     pub fn passed(&self) -> bool {
         let Outcome { checks, ends, .. } = &self.outcome;

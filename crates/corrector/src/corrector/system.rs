@@ -135,20 +135,27 @@ impl<'a> Corrector<'a> {
         else {
             return SolveFault::Singular;
         };
-        let mut names = Vec::new();
-        for condition in &self.conditions {
-            let name = condition.name();
-            names.extend((0..condition.rows()).map(|row| match condition.unknowns() {
-                Some(unknowns) => format!("{name} at {}", self.names.unknown(unknowns[row])),
-                None => format!("{name}, row {row}"),
-            }));
-        }
         let rows = dependent.rows.iter().take(MOST_NAMES);
         SolveFault::Dependent {
-            rows: rows.filter_map(|row| names.get(*row).cloned()).collect(),
+            rows: rows.filter_map(|row| self.name_of(*row)).collect(),
             more: dependent.rows.len().saturating_sub(MOST_NAMES),
             contradictory: dependent.contradictory,
         }
+    }
+
+    /// The condition of a row of the Jacobian, and where it holds.
+    fn name_of(&self, mut row: usize) -> Option<String> {
+        for condition in &self.conditions {
+            if row < condition.rows() {
+                let name = condition.name();
+                return Some(match condition.unknowns() {
+                    Some(unknowns) => format!("{name} at {}", self.names.unknown(unknowns[row])),
+                    None => format!("{name}, row {row}"),
+                });
+            }
+            row -= condition.rows();
+        }
+        None
     }
 
     pub(super) fn values(&self, field: &[f64]) -> Result<Vec<f64>, Inadmissible> {

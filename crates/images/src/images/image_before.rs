@@ -68,7 +68,7 @@ impl Tracker {
                     .as_ref()?
                     .followed_by(&steps[point]?, point_at_rest, centre);
             let again = direct.find(point, spline, indirect.warp);
-            let indirect = Some(indirect).filter(|_| self.was_found[point]);
+            let indirect = self.was_found[point].then_some(indirect);
             Some((point, again.or(indirect)?))
         });
         let solved: Vec<(usize, Match)> = solved.collect();

@@ -163,16 +163,14 @@ impl<'a> Model<'a> {
         After::new(self.energy, history)
     }
 
-    /// The strain energy in mJ that is stored in an equilibrium, without what is dissipated and without the potential of loads; NaN where it is
-    /// inverted. Without memory and loads it is the potential.
-    pub fn strain_energy(&self, equilibrium: &State) -> f64 {
-        if let Some(work) = self.work(equilibrium) {
-            return work.stored;
+    /// The strain energy in mJ that is stored in an equilibrium up to which `work` was done, without what is dissipated and without the
+    /// potential of loads; NaN where it is inverted. Without memory and loads it is the potential.
+    pub(super) fn strain_energy(&self, equilibrium: &State, work: Option<Work>) -> f64 {
+        match work {
+            Some(work) => work.stored,
+            None if self.loads.is_empty() => equilibrium.convergence.energy,
+            None => self.energy_with(&[], equilibrium),
         }
-        if self.loads.is_empty() {
-            return equilibrium.convergence.energy;
-        }
-        self.energy_with(&self.remembered(equilibrium), equilibrium)
     }
 
     /// The energy in mJ of a state with a history; NaN where the state is inverted.

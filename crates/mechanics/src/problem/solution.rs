@@ -31,9 +31,11 @@ impl Solution {
             (reactions.at_groups(groups), reactions.balance().relative())
         };
         let (groups, balances) = states.iter().map(follow).unzip();
-        let energies = states.iter().map(|state| model.strain_energy(state));
-        let energies = energies.collect();
-        let works = states.iter().map(|state| model.work(state)).collect();
+        let works: Vec<Option<Work>> = states.iter().map(|state| model.work(state)).collect();
+        let energies = states.iter().zip(&works);
+        let energies = energies
+            .map(|(state, work)| model.strain_energy(state, *work))
+            .collect();
         Self {
             mesh: model.mesh.clone(),
             groups,

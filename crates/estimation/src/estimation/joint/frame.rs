@@ -171,7 +171,8 @@ impl<'a> Frame<'a> {
         };
         let (effective, residuals) = (nearest.fit.effective, self.residuals(&nearest));
         let variances = nearest.variances.clone();
-        let growth = nearest.growth() * self.source.knowledge.edge_gap.unwrap_or(0.0);
+        let gap = self.source.knowledge.edge_gap;
+        let growth = gap.map_or(0.0, |gap| gap * nearest.growth());
         let difference = nearest.mesh_difference();
         let about = self.law_equations(nearest, law, difference.as_ref())?;
         let reduced = about.reduced;

@@ -240,10 +240,15 @@ fn boundary(model: &Model, columns: &Columns, curves: &mut Curves, file: &mut Xm
     });
 }
 
-fn fixed(set: &str, axis: &str, file: &mut Xml) {
-    let (name, kind) = (format!("{set}_{axis}"), "zero displacement");
+/// A condition along an axis of a set of nodes.
+fn condition(set: &str, axis: &str, kind: &str, file: &mut Xml, content: impl FnOnce(&mut Xml)) {
+    let name = format!("{set}_{axis}");
     let attributes = [("name", &*name), ("node_set", set), ("type", kind)];
-    file.within("bc", &attributes, |file| {
+    file.within("bc", &attributes, content);
+}
+
+fn fixed(set: &str, axis: &str, file: &mut Xml) {
+    condition(set, axis, "zero displacement", file, |file| {
         for each in ["x", "y", "z"] {
             let held = if each == axis { "1" } else { "0" };
             file.text(&format!("{each}_dof"), &[], held);
@@ -252,9 +257,7 @@ fn fixed(set: &str, axis: &str, file: &mut Xml) {
 }
 
 fn prescribed(set: &str, axis: &str, value: f64, curve: usize, file: &mut Xml) {
-    let (name, kind) = (format!("{set}_{axis}"), "prescribed displacement");
-    let attributes = [("name", &*name), ("node_set", set), ("type", kind)];
-    file.within("bc", &attributes, |file| {
+    condition(set, axis, "prescribed displacement", file, |file| {
         file.text("dof", &[], axis);
         file.text("value", &[("lc", &curve.to_string())], &number(value));
         file.text("relative", &[], "0");
