@@ -141,13 +141,13 @@ pub fn factor(unit: &str, dimension: Dimension) -> Result<f64, QuantityFault> {
     }
 }
 
-/// Whether two texts are one quantity of some dimension, such as `200 g` and `0.2 kg`.
+/// Whether two texts are the same, or one quantity of some dimension, such as `200 g` and `0.2 kg`.
 pub fn are_equal(one: &str, other: &str) -> bool {
     let equal = |dimension: Dimension| {
         let values = [one, other].map(|text| parse(text, dimension));
         matches!(values, [Ok(a), Ok(b)] if (a - b).abs() <= 1e-12 * a.abs())
     };
-    Dimension::ALL.into_iter().any(equal)
+    one == other || Dimension::ALL.into_iter().any(equal)
 }
 
 /// Whether a unit is known for any dimension.

@@ -131,7 +131,7 @@ impl<'a> Head<'a> {
             let [(one, first, position), (other, second, _)] = pair else {
                 continue;
             };
-            if first != second && !units::are_equal(first, second) {
+            if !units::are_equal(first, second) {
                 let message = format!(
                     "the {key} is {first} according to {one} and {second} according to {other}"
                 );
@@ -271,9 +271,7 @@ pub(super) fn pairs(table: &Table, known: &[&str]) -> Result<Pairs, Vec<Diagnost
         for (key, value) in parts.filter_map(|part| part.split_once(':')) {
             let (key, value) = (plain_key(key), value.trim().to_owned());
             match pairs.get(&key) {
-                Some((first, _))
-                    if known(&key) && *first != value && !units::are_equal(first, &value) =>
-                {
+                Some((first, _)) if known(&key) && !units::are_equal(first, &value) => {
                     let message = format!("the {key} is stated twice with different values");
                     faults.push(table.fault(position.clone(), message, "state it once"));
                 }

@@ -79,8 +79,10 @@ impl Suspect {
         Self::Friction,
     ];
 
-    /// The zeros of either signal: K(·) x that does not vanish at rest.
-    const ZEROS: [Self; 2] = [Self::ForceZero, Self::ExtensionZero];
+    /// Whether it is the zero of a signal: K(·) x that does not vanish at rest.
+    fn is_zero(self) -> bool {
+        matches!(self, Self::ForceZero | Self::ExtensionZero)
+    }
 
     /// Whether it belongs to the body rather than to the recording.
     fn is_of_body(self) -> bool {
@@ -314,9 +316,9 @@ impl Examination<'_> {
         let most = significant.fold(excess, |most, found| most.max(found.explained));
         let is_sure = |found: &Suspected| is_significant(found) && found.explained > TAKEN * most;
         // A zero error of either signal bends the functions as one of the other does.
-        let is_zero = |suspected: &Suspected| Suspect::ZEROS.contains(&suspected.suspect);
-        let has_zero = found.iter().any(|found| is_zero(found) && is_sure(found));
-        found.retain(|found| is_sure(found) || has_zero && is_zero(found));
+        let is_sure_zero = |found: &Suspected| found.suspect.is_zero() && is_sure(found);
+        let has_zero = found.iter().any(is_sure_zero);
+        found.retain(|found| is_sure(found) || has_zero && found.suspect.is_zero());
         // No mass is negative: one that seems to be is that of a force with the other sign.
         for suspected in &mut found {
             let least = -TURNED * self.joint.recording.mass;
@@ -335,8 +337,8 @@ pub fn description(suspects: &[Suspected]) -> Option<String> {
         .iter()
         .map(|suspected| suspected.suspect.words(suspected.amount, suspected.error));
     let words: Vec<String> = descriptions.collect();
-    let are_zeros = |one: &Suspected| Suspect::ZEROS.contains(&one.suspect);
-    let remedy = if suspects.iter().filter(|one| are_zeros(one)).count() > 1 {
+    let zeros = suspects.iter().filter(|one| one.suspect.is_zero());
+    let remedy = if zeros.count() > 1 {
         "look up at the machine which zero is off, which the recording does not tell, and correct it in the data first, because no interval includes it"
     } else if suspects.first()?.suspect.is_of_body() {
         "smooth functions cannot follow it, and no interval or band includes it"

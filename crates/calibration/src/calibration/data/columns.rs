@@ -154,9 +154,8 @@ fn length_along(head: &Head, roles: &[Role], role: &Role) -> Faulty<f64> {
 
 /// The axis by which the sizes of the specimen are named. A strip is as long as it is pulled, whatever the axis is called.
 fn sized_axis(head: &Head, role: &Role) -> Option<usize> {
-    const STRIPS: [&str; 3] = ["uniaxial", "compression", "simple-shear"];
-    let test = head.setting("test", None).ok().flatten();
-    let is_strip = test.is_some_and(|test| STRIPS.contains(&&*test));
+    let test = head.choice("test", None, &Test::NAMES);
+    let is_strip = matches!(test, Ok(Test::Uniaxial | Test::SimpleShear));
     role.numbered.filter(|axis| *axis == 0 || !is_strip)
 }
 

@@ -232,14 +232,16 @@ impl<'a> Search<'a> {
         });
         let mut state = self.at_bars(body, begin, near)?;
         let mut share = 1.0_f64;
+        // The derivatives at the state, once they were taken: they serve shorter steps from it too.
+        let mut exact: Option<Markers> = None;
         for _ in 0..MOST {
             let far = missing(&state);
             if far.amax() < CLOSE {
                 return Ok(state);
             }
-            let markers = match self.markers.take() {
+            let markers = match self.markers.take().or(exact) {
                 Some(markers) => markers,
-                None => self.markers_by_differences(body, &state)?,
+                None => *exact.insert(self.markers_by_differences(body, &state)?),
             };
             let step = share * markers.step(far).unwrap_or(far);
             let bars = Vector2::from(state.bars) + step;
@@ -254,7 +256,7 @@ impl<'a> Search<'a> {
             let remaining = missing(&next).norm() / far.norm();
             self.markers = (remaining < 1.0 - SERVES * share)
                 .then(|| markers.updated(step, far - missing(&next)));
-            (state, share) = (next, (2.0 * share).min(1.0));
+            (state, share, exact) = (next, (2.0 * share).min(1.0), None);
         }
         let missing = missing(&state).amax();
         if missing < CLOSE {

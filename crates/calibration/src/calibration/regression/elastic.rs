@@ -46,12 +46,13 @@ impl<'a> Elastic<'a> {
     pub fn new(law: &'static Law, tests: &'a [TestData]) -> Self {
         let mut points = Vec::new();
         for (test, data) in tests.iter().enumerate() {
+            let protocols = data.protocols();
             for axis in [0, 1] {
                 let is_along = |one: &&Observation| one.axis == axis;
                 let count = data.observations.iter().filter(is_along).count();
                 let each = count.div_ceil(BINS).max(1);
                 // States of two protocols may share a stretch and differ in the other one.
-                for protocol in data.protocols() {
+                for protocol in &protocols {
                     let rows = protocol.iter().filter(is_along);
                     let mut along: Vec<Observation> = rows.copied().collect();
                     if each > 1 {
