@@ -195,7 +195,7 @@ fn positions_in_the_frame_are_those_of_the_same_markers_in_all_frames() {
     // The third one lies between two of the multiples of 6.4e-8 mm to which positions of this field are rounded.
     let texts = [
         "0.3,1,0.1,0\n64.1,1,0.1,0\n1.1001,1,0.1,0\n",
-        "0.67,1,0.37,0\n64.37,1,0.37,0\n1.3701,1,0.37,0\n",
+        "0.57,1,0.37,0\n64.37,1,0.37,0\n1.3701,1,0.37,0\n",
     ];
     let [first, second] = texts.map(|rows| format!("{head}{rows}"));
     let reading = ReadSettings {
